@@ -19,6 +19,7 @@ class ShapeStatus(IntFlag):
     UNSTABLE = 4
     OVER_CAPACITY = 8
     DISKS_TOUCH = 16
+    MEMORY_UNCERTAIN = 32
 
 class GoalStatus(IntFlag):
     NOT_USABLE = 1

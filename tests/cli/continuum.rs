@@ -358,6 +358,41 @@ fn a_dead_grating_is_bridged_and_flagged() {
     }
 }
 
+#[test]
+fn guards_are_reported() {
+    let place = place();
+    let shifted = |nanometres: f64, is_there: &dyn Fn(&str, usize) -> bool| {
+        changed(&text("mixed.csv"), |name, row, cell| {
+            let is_shift = name.starts_with("shift") && is_there(name, row);
+            if is_shift { (cell.parse::<f64>().unwrap() + nanometres).to_string() } else { cell.to_owned() }
+        })
+    };
+    let command = |what: &str, csv: String| {
+        place.write("guard.csv", csv);
+        place.run(&["continuum", what, "guard.csv", "--model", "cal.toml", "--json", "g.json", "--force"])
+    };
+    let clean = text("mixed.csv");
+    for what in ["shape", "friction"] {
+        command(what, clean.clone()).succeeds();
+        assert_eq!(place.json("g.json")["guards"].as_array().unwrap().len(), 0);
+        command(what, shifted(0.05, &|_, row| row >= 60)).warns(&["all gratings step by +0.0", "6 s"]);
+        let guard = &place.json("g.json")["guards"][0];
+        assert_eq!((guard["kind"].as_str(), guard["time_s"].as_f64()), (Some("common_step"), Some(6.0)));
+        assert!((guard["step_nm"].as_f64().unwrap() - 0.05).abs() < 0.001, "{guard}");
+        let lone = shifted(0.02, &|name, row| name == "shift_5_nm" && row >= 60);
+        command(what, lone).warns(&["grating 5 contradicts its neighbours"]);
+        let guard = &place.json("g.json")["guards"][0];
+        assert_eq!((guard["kind"].as_str(), guard["grating"].as_u64()), (Some("contradicting_grating"), Some(5)));
+    }
+    // Cut after a release has begun.
+    let mut lines = clean.lines();
+    let cut = [lines.next().unwrap()].into_iter().chain(lines.skip(46)).map(|line| format!("{line}\n")).collect();
+    command("shape", cut).warns(&["the run begins at 0.9", "the gratings show it", "MEMORY_UNCERTAIN"]);
+    let result = place.json("g.json");
+    assert_eq!(result["ways"][3]["begin"]["source"], "gratings");
+    assert_eq!(result["series"][3]["status"][0], "MEMORY_UNCERTAIN");
+}
+
 /// A wrong unit is told by its order of magnitude, not by its dead gratings.
 #[test]
 fn a_wrong_unit_is_told() {

@@ -24,16 +24,17 @@ fn a_path_becomes_tensions() {
     for (wanted, predicted) in column(&csv, "bend_rad").iter().zip(column(&csv, "predicted_bend_rad")) {
         assert!((wanted - predicted).abs() < 1e-8, "{wanted} {predicted}");
     }
-    // A run of these tensions has these bends, by the same holes.
+    // A run of these tensions from slack has these bends, by the same holes.
     place.write(
         "run.csv",
         csv.lines()
             .map(|line| line.split(',').collect::<Vec<_>>())
-            .fold(String::new(), |text, cells| text + cells[0] + "," + cells[2] + "\n"),
+            .fold(String::new(), |text, cells| text + cells[0] + "," + cells[2] + "\n")
+            .replacen('\n', "\n-1,0\n", 1),
     );
     place.run(&["continuum", "shape", "run.csv", "--model", "arm.toml", "--ways", "history", "--json", "s.json"]);
     let shapes = place.json("s.json");
-    for (bend_rad, wanted) in numbers(&shapes["series"][0]["bend_rad"]).iter().zip([0.4, 0.9, 0.7, 0.72]) {
+    for (bend_rad, wanted) in numbers(&shapes["series"][0]["bend_rad"]).iter().skip(1).zip([0.4, 0.9, 0.7, 0.72]) {
         assert!((bend_rad - wanted).abs() < 1e-8, "{bend_rad} {wanted}");
     }
     let ways = result["simulation"]["ways"].as_array().unwrap();

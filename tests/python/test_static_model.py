@@ -31,18 +31,29 @@ def same(one, other):
 
 
 def test_a_run_has_the_bits_of_the_command_line_s_shapes(arm):
-    run = continuum.TendonRun.from_arrays(arm, time_s=TIME, tension_base_n=TENSION_N)
-    with pytest.warns(fric.LogWarning, match="begins at 0.80 N at the base"):
-        expected = continuum.shape(arm, run)
+    # Pulled from slack first: under tension at its beginning, a run begins with a memory that the model alone does not have.
+    time_s, tension_n = np.arange(140) * 0.1, np.concatenate([np.linspace(0.0, 0.78, 20), TENSION_N])
+    expected = continuum.shape(arm, continuum.TendonRun.from_arrays(arm, time_s=time_s, tension_base_n=tension_n))
     for way, friction in [("history", "history"), ("none", "none"), ("coulomb", "pulling")]:
         # The other ways start their search from the last shape.
-        shapes = continuum.StaticModel(arm).run(TENSION_N, friction=friction)
+        shapes = continuum.StaticModel(arm).run(tension_n, friction=friction)
         assert shapes.is_new.all() and not shapes.status.any()
         assert same(shapes.disk_position_m, expected.disk_position_m(way))
         assert same(shapes.tension_n[:, 0], expected.tension_n(way))
         assert same(shapes.friction_n[:, 0], expected.friction_n(way))
         assert same(shapes.bend_rad, expected.bend_rad(way))
-        assert not shapes.tension_n[:, 1].any() and shapes.bound_n.shape == (len(TIME), 2, 8)
+        assert not shapes.tension_n[:, 1].any() and shapes.bound_n.shape == (len(time_s), 2, 8)
+
+
+def test_a_run_under_tension_begins_with_an_uncertain_memory(arm):
+    run = continuum.TendonRun.from_arrays(arm, time_s=TIME, tension_base_n=TENSION_N)
+    with pytest.warns(fric.LogWarning, match="begins at 0.80 N at the base"):
+        result = continuum.shape(arm, run, ways=["history"]).to_dict()
+    begin = result["ways"][0]["begin"]
+    assert begin["source"] == "middle" and begin["tension_n"] == [TENSION_N[0]] * 8
+    status = result["series"][0]["status"]
+    assert status[: begin["uncertain_samples"]] == ["MEMORY_UNCERTAIN"] * begin["uncertain_samples"]
+    assert set(status[begin["uncertain_samples"] :]) == {"ok"}
 
 
 def test_steps_are_the_rows_of_a_run(arm, model):

@@ -52,6 +52,9 @@
 /// Disks would touch, and the bend is beyond the model; computed as usual.
 #define FRIC_SHAPE_DISKS_TOUCH 16
 
+/// A hole has not slid since `StaticModel::begin_history` of the Rust crate stated what it holds; computed as usual.
+#define FRIC_SHAPE_MEMORY_UNCERTAIN 32
+
 /// The flags without a new shape.
 #define FRIC_SHAPE_FAILED 7
 

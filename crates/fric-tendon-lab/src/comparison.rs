@@ -3,11 +3,12 @@
 use fric_tendon::{ManipulatorParams, ShapeStatus, Tendon};
 
 use super::base_noise::{BaseNoise, steadied};
+use super::begin::Begin;
 use super::error::ContinuumError;
 use super::friction::distributions;
 use super::gratings::GratingSample;
 use super::run::Run;
-use super::shape_errors::{ComputedShape, ShapeErrors, Way, shapes};
+use super::shape_errors::{ComputedShape, ShapeErrors, Way, shapes, shapes_by};
 
 /// A run computed by one friction model.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub struct WayShapes {
     pub errors: ShapeErrors,
     /// Noise that was taken off the tension at the base, which only the history is sensitive to.
     pub base_noise: Option<BaseNoise>,
+    /// What the holes hold at the beginning of a run under tension, by the history.
+    pub begin: Option<Begin>,
 }
 
 /// Computes a run by those friction models whose inputs it contains, in the order of [`Way::ALL`]: `none`, `coulomb` and `history` need the tension
@@ -50,12 +53,20 @@ pub fn compare(
         .into_iter()
         .map(|way| {
             let (steady, base_noise) = if way == Way::History { steadied(run) } else { (run.clone(), None) };
-            let shapes = shapes(params, steady.samples(), way, measured.unwrap_or_default())?;
+            let mut begin = if way == Way::History { Begin::of(params, &steady, measured)? } else { None };
+            let shapes = match &mut begin {
+                Some(begin) => {
+                    let shapes = shapes_by(begin.model(params)?, steady.samples(), way, &[]);
+                    begin.count(&shapes);
+                    shapes
+                }
+                None => shapes(params, steady.samples(), way, measured.unwrap_or_default())?,
+            };
             let mut errors = ShapeErrors::default();
             for (shape, sample) in shapes.iter().zip(samples) {
                 errors.add(shape, &sample.marker_m);
             }
-            Ok(WayShapes { way, shapes, errors, base_noise })
+            Ok(WayShapes { way, shapes, errors, base_noise, begin })
         })
         .collect::<Result<_, ContinuumError>>()?;
     for (place, sample) in samples.iter().enumerate() {

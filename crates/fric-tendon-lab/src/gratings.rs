@@ -179,7 +179,11 @@ impl Gratings {
     /// Returns [`ContinuumError::WrongCount`] for a run with another number of gratings, or [`ContinuumError::AllDead`] if none is alive in any
     /// sample.
     pub fn read(&self, run: &Run) -> Result<Vec<GratingSample>, ContinuumError> {
-        let tensions = self.unbridged(run)?;
+        Self::bridged(run, self.unbridged(run)?)
+    }
+
+    /// Returns the tensions of a whole run with dead gratings, and those that are NaN, interpolated.
+    pub(super) fn bridged(run: &Run, tensions: Vec<Vec<Tension>>) -> Result<Vec<GratingSample>, ContinuumError> {
         let base_n = run.samples().iter().map(|sample| sample.tension_base_n);
         let greatest_n = base_n.clone().chain(tensions.iter().map(|all| middle(all))).fold(0.0, f64::max);
         let whole: Vec<GratingSample> =
@@ -271,6 +275,11 @@ fn judged(mut tension: Vec<Tension>, base_n: f64, greatest_n: f64) -> GratingSam
             None => break,
         }
     }
+    interpolated(tension, base_n)
+}
+
+/// Interpolates the tensions of one sample that are NaN.
+pub(super) fn interpolated(mut tension: Vec<Tension>, base_n: f64) -> GratingSample {
     let values: Vec<f64> = tension.iter().map(|tension| tension.value_n).collect();
     if !values.iter().any(|value| value.is_finite()) {
         // Without any tension there is nothing to interpolate.

@@ -109,12 +109,17 @@ impl Run {
         &self.samples
     }
 
-    /// Returns a warning in one sentence if the tendon is under tension at the beginning, N: what the holes remember from before is unknown.
+    /// Returns the tension at the base with which the run begins, N, if the holes may remember something from before it.
+    #[must_use]
+    pub fn begin_tension_n(&self) -> Option<f64> {
+        let greatest_n = self.samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
+        self.samples.first().map(|first| first.tension_base_n).filter(|first_n| *first_n > BEGIN_RATIO * greatest_n)
+    }
+
+    /// Returns a warning in one sentence if the tendon is under tension at the beginning: what the holes remember from before is unknown.
     #[must_use]
     pub fn begin_warning(&self) -> Option<String> {
-        let greatest_n = self.samples.iter().map(|sample| sample.tension_base_n).fold(0.0, f64::max);
-        let first_n = self.samples.first().map_or(f64::NAN, |first| first.tension_base_n);
-        (first_n > BEGIN_RATIO * greatest_n).then(|| {
+        self.begin_tension_n().map(|first_n| {
             format!(
                 "the run begins at {first_n:.2} N at the base, and the history takes the tendon as pulled from slack to there; if it was released \
                  before, friction is wrong until the tension passes the one from which it was released. Begin runs with a slack tendon"

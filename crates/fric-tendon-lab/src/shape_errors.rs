@@ -70,9 +70,19 @@ pub fn shapes(
     way: Way,
     measured: &[GratingSample],
 ) -> Result<Vec<ComputedShape>, ManipulatorError> {
-    let mut model = AnyStaticModel::new(params)?;
+    Ok(shapes_by(AnyStaticModel::new(params)?, samples, way, measured))
+}
+
+/// Computes the same by a model in any state.
+pub(super) fn shapes_by(
+    mut model: AnyStaticModel,
+    samples: &[RunSample],
+    way: Way,
+    measured: &[GratingSample],
+) -> Vec<ComputedShape> {
+    let count = model.params().disk_count();
     let mut measured = measured.iter();
-    let mut tension_n = Vec::with_capacity(params.disk_count());
+    let mut tension_n = Vec::with_capacity(count);
     let computed = samples.iter().map(|sample| {
         let base_n = [sample.tension_base_n, 0.0];
         let status = match way {
@@ -87,7 +97,7 @@ pub fn shapes(
                 let base_n = if base_n[0].is_nan() { [first_n, 0.0] } else { base_n };
                 // Without a grating nothing was measured, but an empty list would mean a slack tendon.
                 let no_tension = [f64::NAN; MAX_DISKS];
-                let given_n = if tension_n.is_empty() { &no_tension[..params.disk_count()] } else { &tension_n[..] };
+                let given_n = if tension_n.is_empty() { &no_tension[..count] } else { &tension_n[..] };
                 model.solve(base_n, Friction::Measured([given_n, &[]]))
             }
         };
@@ -100,7 +110,7 @@ pub fn shapes(
             bound_n: model.bound_n(Tendon::Agonist).to_vec(),
         }
     });
-    Ok(computed.collect())
+    computed.collect()
 }
 
 /// Distances between disks and their markers.

@@ -4,6 +4,7 @@
 mod discover;
 mod experiments;
 mod gratings;
+mod guards;
 mod identify;
 mod runs;
 mod shapes;

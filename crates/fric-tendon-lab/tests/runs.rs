@@ -5,6 +5,7 @@ use fric_tendon::{ManipulatorOptions, ManipulatorParams};
 use fric_tendon_lab::comparison::compare;
 use fric_tendon_lab::fbg::Calibration;
 use fric_tendon_lab::gratings::Gratings;
+use fric_tendon_lab::guard::Guarded;
 use fric_tendon_lab::result::FrictionResult;
 use fric_tendon_lab::shape_errors::{Way, shapes};
 use fric_tendon_lab::simulate::{Experiment, SimulatedRun, TendonSimulationOptions, simulate};
@@ -119,9 +120,9 @@ fn spoilt(run: &SimulatedRun, grating: usize, spoil: impl Fn(usize, &mut f64)) -
     }
     let samples = Run::new(samples, 8).unwrap();
     let gratings = Gratings::new(Calibration::fit_all(&run.calibration).unwrap());
-    let measured = gratings.read(&samples).unwrap();
-    let count = |place: usize| measured.iter().filter(|sample| sample.is_bridged[place]).count();
-    (FrictionResult::new("arm", &samples, &measured), (0..8).map(count).collect())
+    let guarded = Guarded { measured: gratings.read(&samples).unwrap(), guards: Vec::new() };
+    let count = |place: usize| guarded.measured.iter().filter(|sample| sample.is_bridged[place]).count();
+    (FrictionResult::new("arm", &samples, &guarded), (0..8).map(count).collect())
 }
 
 /// Where no grating says anything nothing is made up, also not by the tension at the base.
@@ -181,10 +182,10 @@ fn without_the_tension_at_the_base_the_first_hole_is_not_known() {
     let samples = run.samples.iter().map(|sample| RunSample { tension_base_n: f64::NAN, ..sample.clone() }).collect();
     let samples = Run::new(samples, 8).unwrap();
     let gratings = Gratings::new(Calibration::fit_all(&run.calibration).unwrap());
-    let measured = gratings.read(&samples).unwrap();
-    let result = FrictionResult::new("arm", &samples, &measured);
+    let guarded = Guarded::read(&published(), &gratings, &samples).unwrap();
+    let result = FrictionResult::new("arm", &samples, &guarded);
     assert!(result.holes[0].mean_n.is_nan() && result.holes[1].mean_n.is_finite());
-    let ways = compare(&published(), &samples, Some(&measured), &Way::ALL).unwrap();
+    let ways = compare(&published(), &samples, Some(&guarded.measured), &Way::ALL).unwrap();
     assert_eq!(ways.iter().map(|way| way.way.name()).collect::<Vec<_>>(), ["measured"]);
     assert!(ways[0].errors.mean_mm().unwrap() < 1.0);
 }

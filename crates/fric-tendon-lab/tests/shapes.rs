@@ -1,4 +1,4 @@
-//! Constant-curvature shapes against a finely divided elastica.
+//! Shapes of segments with few unknowns against a finely divided elastica.
 
 use fric_tendon::{Friction, ManipulatorOptions, ManipulatorParams, StaticModel, TendonOptions};
 use fric_tendon_lab::simulate::elastica;
@@ -65,9 +65,9 @@ fn segments_of_different_lengths_are_the_elasticas() {
 }
 
 #[test]
-fn refinement_converges_with_the_square() {
-    // The same length and weight in more and more segments under a load on the tip. The elastica's own error falls with the
-    // square of its links, and is made small beside what is measured.
+fn refinement_converges_with_the_fourth_power() {
+    // The same length and weight in more and more segments under a load on the tip: the curvature of a segment is right up to what is quadratic in its
+    // length. The elastica's own error falls with the square of its links; it is 2e-7 here, and hides what 32 segments leave.
     let of = |disks: usize, links: usize| {
         let options = ManipulatorOptions {
             disk_count: disks,
@@ -80,9 +80,9 @@ fn refinement_converges_with_the_square() {
         };
         deviation(&options, [0.8, 0.0], links).0
     };
-    let errors: Vec<f64> = [(4, 200), (8, 200), (16, 100), (32, 50)].map(|(disks, links)| of(disks, links)).to_vec();
+    let errors = [(4, 200), (8, 200), (16, 100)].map(|(disks, links)| of(disks, links));
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
-        assert!((1.7..2.3).contains(&order), "order {order} of {errors:?}");
+        assert!((3.7..4.9).contains(&order), "order {order} of {errors:?}");
     }
 }

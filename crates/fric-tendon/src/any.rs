@@ -105,6 +105,11 @@ impl AnyStaticModel {
         each!(&mut self.0, model => model.solve(base_tension_n, friction))
     }
 
+    /// Begins the history with what the holes hold; see [`StaticModel::begin_history`].
+    pub fn begin_history(&mut self, base_tension_n: [f64; 2], tension_n: [&[f64]; 2]) -> ShapeStatus {
+        each!(&mut self.0, model => model.begin_history(base_tension_n, tension_n))
+    }
+
     /// Computes the base tensions for a goal; see [`StaticModel::tension_for`].
     pub fn tension_for(&mut self, goal: Goal, friction: Friction<'_>, drive: &Drive) -> Command {
         each!(&mut self.0, model => model.tension_for(goal, friction, drive))

@@ -16,6 +16,7 @@ use super::model::{Past, StaticModel, frictions};
 use super::params::{ManipulatorError, ManipulatorParams, Tendon};
 use super::shape::{turned, write_flags};
 use super::solver::arc::Arc;
+use super::solver::deflection::Deflection;
 use super::solver::load::turned_further;
 use super::solver::newton::{Law, Point, Target, moved};
 
@@ -463,21 +464,38 @@ struct Tip {
 impl Tip {
     /// Computes the tip. Bending a segment rotates everything beyond it about the centroid of its arc.
     fn new<const DISKS: usize>(params: &ManipulatorParams, point: &Point<DISKS>, change: &Point<DISKS>) -> Self {
+        let has_load = params.has_load();
         let (mut place_m, mut turn) = (Vector2::zeros(), (0.0, 1.0));
+        // The shift of the tip by the deflections of the segments, and its change.
+        let (mut shift_m, mut shift_change_m) = (Vector2::zeros(), Vector2::zeros());
         // Σ change and Σ change·centroid: the tip moves by Σ change·(tip − centroid), rotated by a quarter turn.
         let (mut turning_rad, mut moment) = (0.0, Vector2::zeros());
-        let segments = params.pitch_m().iter().zip(point.bend_rad.iter().zip(&change.bend_rad));
-        for (pitch_m, (bend_rad, change_rad)) in segments {
+        let backbone = params.pitch_m().iter().zip(&params.segment_stiffness_n_m2).zip(&params.middle_force_n);
+        for (((pitch_m, stiffness_n_m2), force_n), (bend_rad, change_rad)) in
+            backbone.zip(point.bend_rad.iter().zip(&change.bend_rad))
+        {
             let arc = Arc::new(*pitch_m, *bend_rad);
             let centroid_m: Vector2<f64> = place_m + turned(turn, arc.centroid_m);
+            let chord_m = turned(turn, arc.end_m);
+            if has_load {
+                let deflection = Deflection::new(chord_m, (*pitch_m, *stiffness_n_m2), *bend_rad, *force_n);
+                shift_m += deflection.shift_m();
+                shift_change_m += deflection.shift_change_m(turning_rad, *change_rad);
+            }
             turning_rad += change_rad;
             moment += *change_rad * centroid_m;
-            place_m += turned(turn, arc.end_m);
+            place_m += chord_m;
             turn = turned_further(turn, arc.turn);
         }
         let lever = turning_rad * place_m - moment;
+        let speed_m = Vector2::new(-lever.y, lever.x);
         let (sin, cos) = turn;
-        Self { place_m, speed_m: Vector2::new(-lever.y, lever.x), across: Vector2::new(-sin, cos) }
+        let across = Vector2::new(-sin, cos);
+        if has_load {
+            Self { place_m: place_m + shift_m, speed_m: speed_m + shift_change_m, across }
+        } else {
+            Self { place_m, speed_m, across }
+        }
     }
 
     /// Returns the direction in which the tip moves while the bend grows.

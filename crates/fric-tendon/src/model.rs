@@ -14,6 +14,9 @@ use super::solver::newton::{Contacts, Law, Newton, Point, Target, chords, moved,
 const LOAD_STEPS: u32 = 32;
 /// Maximum number of halvings of a step of the base tensions, if the holes' equations have no solution at once.
 const MOST_PARTS: u32 = 48;
+/// Fraction of its bound from which the friction of a hole has slid, and has forgotten what it held before: a Dahl contact holds a hundredth of that
+/// then.
+const SLID_RATIO: f64 = 0.99;
 
 /// Static model of a manipulator of up to `DISKS` disks, [`MAX_DISKS`](super::MAX_DISKS) at most.
 ///
@@ -23,7 +26,7 @@ const MOST_PARTS: u32 = 48;
 /// **[`Friction::History`].** Each hole has a Dahl state ([`fric_core::dahl`]), driven by the way of the tendon through that hole:
 /// what the chords beyond it shorten and the tendon beyond it stretches. All holes and the shape are solved together at
 /// the end of the step, so that a step may be as long as the tension moves one way; a reversal belongs to the end of a step.
-/// The first step is taken as pulled from the unloaded tendon. Holes are as many states as there are, and nothing else is
+/// The first step is taken as pulled from the unloaded tendon, unless [`begin_history`](Self::begin_history) states what the holes hold. Holes are as many states as there are, and nothing else is
 /// remembered: the other ways may be solved in between and leave the holes as they are.
 #[derive(Clone, Debug)]
 pub struct StaticModel<const DISKS: usize> {
@@ -88,9 +91,11 @@ pub(super) struct Past<const DISKS: usize> {
     /// Change of the point and of the base tensions during the step: the start of the next step's search, not memory.
     change: Point<DISKS>,
     change_n: [f64; 2],
+    /// Whether each hole may still hold something from before the history.
+    is_uncertain: [[bool; DISKS]; 2],
 }
 
-words_of!(Past<const DISKS> { point, base_tension_n, contacts, change, change_n });
+words_of!(Past<const DISKS> { point, base_tension_n, contacts, change, change_n, is_uncertain });
 
 impl<const DISKS: usize> Past<DISKS> {
     const ZERO: Self = Self {
@@ -99,6 +104,7 @@ impl<const DISKS: usize> Past<DISKS> {
         contacts: Contacts { friction_n: [[0.0; DISKS]; 2], travel_m: [[0.0; DISKS]; 2] },
         change: Point::ZERO,
         change_n: [0.0; 2],
+        is_uncertain: [[false; DISKS]; 2],
     };
     /// Maximum ratio of an extrapolated change to the last one, and the least change of a tension that has a direction, N.
     const FARTHEST: f64 = 2.0;
@@ -223,8 +229,43 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         }
         if let Friction::History = friction {
             self.remember(&point, base_tension_n);
+            return self.show(&point, base_tension_n) | self.forgotten();
         }
         self.show(&point, base_tension_n)
+    }
+
+    /// Begins the history with what the holes hold under known tensions, N, at the base and in the segments of both tendons, as
+    /// [`Friction::Measured`] takes them, instead of the relaxed tendon. A hole that cannot hold its friction slips in the next step.
+    ///
+    /// Until every hole has slid once, and has forgotten this beginning, shapes by [`Friction::History`] have the flag
+    /// [`MEMORY_UNCERTAIN`](ShapeStatus::MEMORY_UNCERTAIN). Without a shape the history is unchanged.
+    pub fn begin_history(&mut self, base_tension_n: [f64; 2], tension_n: [&[f64]; 2]) -> ShapeStatus {
+        let status = self.solve(base_tension_n, Friction::Measured(tension_n));
+        if !status.has_shape() {
+            return status;
+        }
+        let Shape { bend_rad, tension_n, .. } = self.state.shape;
+        let past = self.past(&Point { bend_rad, tension_n }, base_tension_n);
+        self.state.history = Some(Past { is_uncertain: [[true; DISKS]; 2], ..past });
+        status | self.forgotten()
+    }
+
+    /// Notes which holes have slid. Returns the flag if some hole has not since the beginning of the history.
+    fn forgotten(&mut self) -> ShapeStatus {
+        let Shape { count, friction_n, bound_n, .. } = &self.state.shape;
+        let Some(past) = &mut self.state.history else { return ShapeStatus::OK };
+        let mut status = ShapeStatus::OK;
+        for (is_uncertain, (friction_n, bound_n)) in past.is_uncertain.iter_mut().zip(friction_n.iter().zip(bound_n)) {
+            for (is_uncertain, (friction_n, bound_n)) in
+                is_uncertain.iter_mut().zip(friction_n.iter().zip(bound_n)).take(*count)
+            {
+                *is_uncertain &= friction_n.abs() < SLID_RATIO * bound_n;
+                if *is_uncertain {
+                    status = ShapeStatus::MEMORY_UNCERTAIN;
+                }
+            }
+        }
+        status
     }
 
     pub(super) fn is_stable(&mut self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> bool {
@@ -335,13 +376,14 @@ impl<const DISKS: usize> StaticModel<DISKS> {
     fn past(&self, point: &Point<DISKS>, base_tension_n: [f64; 2]) -> Past<DISKS> {
         let contacts =
             Contacts { friction_n: frictions(point, base_tension_n), travel_m: travels_m(&self.params, point) };
-        Past { point: *point, base_tension_n, contacts, change: Point::ZERO, change_n: [0.0; 2] }
+        Past { point: *point, base_tension_n, contacts, ..Past::ZERO }
     }
 
     fn remember(&mut self, point: &Point<DISKS>, base_tension_n: [f64; 2]) {
         let mut past = self.past(point, base_tension_n);
         if let Some(before) = &self.state.history {
             past.change = moved(point, &before.point, -1.0);
+            past.is_uncertain = before.is_uncertain;
             for ((change_n, now_n), before_n) in past.change_n.iter_mut().zip(base_tension_n).zip(before.base_tension_n)
             {
                 *change_n = now_n - before_n;
@@ -372,7 +414,7 @@ impl<const DISKS: usize> StaticModel<DISKS> {
         self.state.shape = Shape {
             count,
             bend_rad: point.bend_rad,
-            position_m: positions(&self.params.pitch_m, &point.bend_rad),
+            position_m: positions(&self.params, &point.bend_rad),
             base_tension_n,
             tension_n: point.tension_n,
             friction_n: frictions(point, base_tension_n),

@@ -153,6 +153,8 @@ pub struct ManipulatorParams {
     pub(crate) disk_weight_n: Vector2<f64>,
     pub(crate) backbone_weight_n: [Vector2<f64>; MAX_DISKS],
     pub(crate) tip_force_n: Vector2<f64>,
+    /// Force of all weight and tip load beyond the middle of each segment, N.
+    pub(crate) middle_force_n: [Vector2<f64>; MAX_DISKS],
     pub(crate) tendons: [TendonParams; 2],
 }
 
@@ -279,7 +281,16 @@ impl ManipulatorParams {
         let disk_mass_kg = checked("disk_mass_kg", options.disk_mass_kg, 0.0, 1e3)?;
         let backbone_mass_kg_per_m = checked("backbone_mass_kg_per_m", options.backbone_mass_kg_per_m, 0.0, 1e3)?;
         let tip_mass_kg = checked("tip_mass_kg", options.tip_mass_kg, 0.0, 1e3)?;
-        let tip_force_n = checked_vector("tip_force_n", options.tip_force_n, 1e6)?;
+        let tip_force_n = checked_vector("tip_force_n", options.tip_force_n, 1e6)? + tip_mass_kg * gravity;
+        let disk_weight_n = disk_mass_kg * gravity;
+        let backbone_weight_n = pitch_m.map(|pitch_m| backbone_mass_kg_per_m * pitch_m * gravity);
+        let mut beyond_n = tip_force_n;
+        let mut middle_force_n = [Vector2::zeros(); MAX_DISKS];
+        for (middle_n, weight_n) in middle_force_n.iter_mut().zip(backbone_weight_n).take(count).rev() {
+            beyond_n += disk_weight_n;
+            *middle_n = beyond_n + 0.5 * weight_n;
+            beyond_n += weight_n;
+        }
         let [agonist, antagonist] = &options.tendons;
         let tendon = |which: Tendon, options: &TendonOptions<'_>| {
             TendonParams::new(options, count).map_err(|error| ManipulatorError { tendon: Some(which), ..error })
@@ -293,9 +304,10 @@ impl ManipulatorParams {
             bending_stiffness_n_m2: stiffness_n_m2,
             segment_stiffness_n_m2: stiffness_ratio.map(|ratio| stiffness_n_m2 * ratio),
             rest_bend_rad: products(&curvature_per_m, &pitch_m),
-            disk_weight_n: disk_mass_kg * gravity,
-            backbone_weight_n: pitch_m.map(|pitch_m| backbone_mass_kg_per_m * pitch_m * gravity),
-            tip_force_n: tip_force_n + tip_mass_kg * gravity,
+            disk_weight_n,
+            backbone_weight_n,
+            tip_force_n,
+            middle_force_n,
             tendons: [tendon(Tendon::Agonist, agonist)?, tendon(Tendon::Antagonist, antagonist)?],
         })
     }

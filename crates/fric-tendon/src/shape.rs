@@ -17,6 +17,7 @@ use super::params::{MAX_DISKS, Tendon};
 /// | `UNSTABLE` | the equilibrium found is no minimum of the energy: the manipulator would leave it | the last one that was right |
 /// | `OVER_CAPACITY` | a tension above the tendon's capacity | computed as usual |
 /// | `DISKS_TOUCH` | two holes are nearer than a disk is thick: bend beyond the model | computed as usual |
+/// | `MEMORY_UNCERTAIN` | since [`begin_history`](super::StaticModel::begin_history) some hole has not slid | computed as usual |
 ///
 /// With any of the first three the state of the holes is unchanged, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -36,14 +37,17 @@ impl ShapeStatus {
     pub const OVER_CAPACITY: Self = Self(1 << 3);
     /// Disks would touch.
     pub const DISKS_TOUCH: Self = Self(1 << 4);
+    /// A hole may still hold friction from before the history began.
+    pub const MEMORY_UNCERTAIN: Self = Self(1 << 5);
 
     /// Every flag with its name, lowest bit first.
-    pub const NAMES: [(&'static str, Self); 5] = [
+    pub const NAMES: [(&'static str, Self); 6] = [
         ("NOT_FINITE", Self::NOT_FINITE),
         ("NOT_CONVERGED", Self::NOT_CONVERGED),
         ("UNSTABLE", Self::UNSTABLE),
         ("OVER_CAPACITY", Self::OVER_CAPACITY),
         ("DISKS_TOUCH", Self::DISKS_TOUCH),
+        ("MEMORY_UNCERTAIN", Self::MEMORY_UNCERTAIN),
     ];
 
     const FAILED: Self = Self(Self::NOT_FINITE.0 | Self::NOT_CONVERGED.0 | Self::UNSTABLE.0);

@@ -15,6 +15,36 @@ fn published() -> StaticModel<8> {
     model(&ManipulatorOptions::published())
 }
 
+/// Parts of a segment, over which its backbone is summed up.
+const PARTS: u32 = 400;
+
+/// The energy of the skews of the segments, each at its minimum for these bends: all that is beyond the middle of a segment pulls on its end, and
+/// the summation along the backbone shows how far a skew moves that.
+fn skew_energy(options: &ManipulatorOptions<'_>, bend_rad: &[f64]) -> f64 {
+    let [gx, gy] = options.gravity_m_per_s2;
+    let [fx, fy] = options.tip_force_n;
+    let length = |place: usize| *options.pitch_m.get(place).unwrap_or(&options.pitch_m[0]);
+    let end = |start_rad: f64, bend: f64, skew: f64| {
+        (0..PARTS).fold([0.0, 0.0], |[x, y], part| {
+            let u = (f64::from(part) + 0.5) / f64::from(PARTS);
+            let at = start_rad + bend * u + skew * (u * u - u);
+            [x + at.cos() / f64::from(PARTS), y + at.sin() / f64::from(PARTS)]
+        })
+    };
+    let (mut angle, mut sum) = (0.0, 0.0);
+    for (place, &bend) in bend_rad.iter().enumerate() {
+        let disk_count = f64::from(u32::try_from(bend_rad.len() - place).unwrap());
+        let backbone_m = 0.5 * length(place) + (place + 1..bend_rad.len()).map(length).sum::<f64>();
+        let kg = options.tip_mass_kg + disk_count * options.disk_mass_kg + options.backbone_mass_kg_per_m * backbone_m;
+        let ([x, y], [other_x, other_y]) = (end(angle, bend, 1e-3), end(angle, bend, -1e-3));
+        let work = length(place) * ((fx + kg * gx) * (x - other_x) + (fy + kg * gy) * (y - other_y)) / 2e-3;
+        let skew = 3.0 * length(place) / options.bending_stiffness_n_m2 * work;
+        sum -= work * skew / (1.0 + (1.0 + (skew / 1.5).powi(2)).sqrt());
+        angle += bend;
+    }
+    sum
+}
+
 /// The energy of a manipulator whose segments carry these tensions, up to a constant; written from scratch, with the
 /// centres of gravity by summation along the arc.
 fn energy(options: &ManipulatorOptions<'_>, bend_rad: &[f64], tension_n: [&[f64]; 2]) -> f64 {
@@ -25,12 +55,11 @@ fn energy(options: &ManipulatorOptions<'_>, bend_rad: &[f64], tension_n: [&[f64]
         let length = *options.pitch_m.get(place).unwrap_or(&options.pitch_m[0]);
         sum += options.bending_stiffness_n_m2 * bend * bend / (2.0 * length);
         let start = (x, y, angle);
-        let parts = 400;
-        for part in 0..parts {
-            let at = start.2 + bend * (f64::from(part) + 0.5) / f64::from(parts);
-            let step = length / f64::from(parts);
+        for part in 0..PARTS {
+            let at = start.2 + bend * (f64::from(part) + 0.5) / f64::from(PARTS);
+            let step = length / f64::from(PARTS);
             // Chord of an arc of this bend, and its middle.
-            let chord = step * (1.0 - (bend / f64::from(parts)).powi(2) / 24.0);
+            let chord = step * (1.0 - (bend / f64::from(PARTS)).powi(2) / 24.0);
             let (dx, dy) = (chord * at.cos(), chord * at.sin());
             sum += lift(x + 0.5 * dx, y + 0.5 * dy, options.backbone_mass_kg_per_m * step);
             x += dx;
@@ -71,7 +100,7 @@ fn minimum(pitch_m: &[f64]) {
     let antagonist: Vec<f64> = (0..8).map(|place| 0.2 + 0.03 * f64::from(place)).collect();
     assert!(model.solve([1.3, 0.2], Friction::Measured([&agonist, &antagonist])).is_ok());
     let bend = model.shape().segment_bend_rad().to_vec();
-    let of = |bend: &[f64]| energy(&options, bend, [&agonist, &antagonist]);
+    let of = |bend: &[f64]| energy(&options, bend, [&agonist, &antagonist]) + skew_energy(&options, bend);
     for place in 0..8 {
         let mut change = [0.0; 2];
         for (side, change) in [1e-4, -1e-4].into_iter().zip(&mut change) {
@@ -249,6 +278,41 @@ fn what_is_out_of_the_ordinary_is_a_status() {
     }
     assert!(model.solve([1.0, 0.0], Friction::History).is_ok());
     assert_eq!(format!("{}", ShapeStatus::NOT_CONVERGED | ShapeStatus::OVER_CAPACITY), "NOT_CONVERGED|OVER_CAPACITY");
+}
+
+#[test]
+fn a_cantilever_deflects_by_the_formula() {
+    // FL³/(3EI) for a small transverse force on the tip, in however many segments.
+    for (disk_count, pitch_m) in [(1, &[0.296][..]), (8, &[0.037]), (8, &UNEVEN_M)] {
+        let options =
+            ManipulatorOptions { disk_count, pitch_m, tip_force_n: [0.0, 1e-5], ..ManipulatorOptions::published() };
+        let mut model = model::<8>(&options);
+        assert!(model.solve([0.0; 2], Friction::None).is_ok());
+        let [_, y_m] = model.shape().disk_position_m()[disk_count - 1];
+        let expected_m = 1e-5 * options.pitch_m.iter().cycle().take(disk_count).sum::<f64>().powi(3)
+            / (3.0 * options.bending_stiffness_n_m2);
+        assert!((y_m / expected_m - 1.0).abs() < 1e-6, "{disk_count} {y_m} {expected_m}");
+    }
+}
+
+#[test]
+fn a_heavy_load_on_one_segment_has_a_shape() {
+    // Far beyond small deflections: the tip of an elastica under F·L²/(E·I) = 3 is 0.603 L off, under 10 it is 0.811 L off.
+    let tip_ratio = |load: f64| {
+        let options = ManipulatorOptions {
+            disk_count: 1,
+            pitch_m: &[0.3],
+            disk_mass_kg: 0.0,
+            tip_force_n: [0.0, load * ManipulatorOptions::published().bending_stiffness_n_m2 / 0.09],
+            ..ManipulatorOptions::published()
+        };
+        let mut model = model::<8>(&options);
+        assert!(model.solve([0.0; 2], Friction::None).is_ok(), "{load}");
+        model.shape().disk_position_m()[0][1] / 0.3
+    };
+    assert!((tip_ratio(3.0) - 0.603).abs() < 0.01);
+    assert!((tip_ratio(10.0) - 0.811).abs() < 0.05);
+    assert!(tip_ratio(100.0) < 1.0);
 }
 
 #[test]

@@ -14,6 +14,8 @@ pub const FRIC_SHAPE_UNSTABLE: u32 = 4;
 pub const FRIC_SHAPE_OVER_CAPACITY: u32 = 8;
 /// Disks would touch, and the bend is beyond the model; computed as usual.
 pub const FRIC_SHAPE_DISKS_TOUCH: u32 = 16;
+/// A hole has not slid since `StaticModel::begin_history` of the Rust crate stated what it holds; computed as usual.
+pub const FRIC_SHAPE_MEMORY_UNCERTAIN: u32 = 32;
 /// The flags without a new shape.
 pub const FRIC_SHAPE_FAILED: u32 = 7;
 
@@ -43,6 +45,7 @@ const _: () = {
         FRIC_SHAPE_UNSTABLE,
         FRIC_SHAPE_OVER_CAPACITY,
         FRIC_SHAPE_DISKS_TOUCH,
+        FRIC_SHAPE_MEMORY_UNCERTAIN,
     ];
     let command = [
         FRIC_COMMAND_NOT_USABLE,

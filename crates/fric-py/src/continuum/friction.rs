@@ -8,7 +8,7 @@ use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
-use super::{Manipulator, TendonRun, flat, in_base_frame, measured};
+use super::{Manipulator, TendonRun, flat, guarded, in_base_frame};
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, numbers};
 use crate::errors::Outcome;
 use crate::log;
@@ -27,7 +27,7 @@ pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &Tendo
     let files = run.files();
     let run = &in_base_frame(manipulator, &run.run)?;
     run.check_capacity(manipulator.file.params().capacity_n(Tendon::Agonist))?;
-    let measured = py.detach(|| measured(manipulator, run))?.ok_or(if run.has_shifts() {
+    let guarded = py.detach(|| guarded(manipulator, run))?.ok_or(if run.has_shifts() {
         ContinuumError::NoGratings
     } else {
         ContinuumError::MissingGroup {
@@ -36,8 +36,8 @@ pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &Tendo
             remedy: "`shift_nm`; `shape` predicts friction from the tension at the base",
         }
     })?;
-    let result = FrictionResult::new(&manipulator.file.tables().name, run, &measured);
-    log::warn(py, &result.bridged.iter().map(|one| one.warning(result.samples)).collect::<Vec<_>>())?;
+    let result = FrictionResult::new(&manipulator.file.tables().name, run, &guarded);
+    log::warn(py, &result.grating_warnings())?;
     let provenance = manipulator.provenance("fric.continuum.friction", &files);
     let page = |provenance: &Provenance| report::friction(&result, provenance);
     let shown = results::shown(py, result.summary(), &result, page, report::friction_table(&result), &provenance)?;

@@ -23,7 +23,8 @@ pub use simulate::continuum_simulate;
 pub use static_model::{StaticModel, StaticSnapshot};
 pub use track::continuum_track;
 
-use fric_tendon_lab::gratings::{GratingSample, Gratings};
+use fric_tendon_lab::gratings::Gratings;
+use fric_tendon_lab::guard::Guarded;
 use fric_tendon_lab::{ContinuumError, Run, corrected};
 
 use crate::errors::Outcome;
@@ -31,10 +32,10 @@ use crate::errors::Outcome;
 /// The name of a run that does not come from a file.
 const ARRAYS: &str = "arrays";
 
-/// Returns the tensions of a manipulator's gratings in a run; `None` if either has none.
-fn measured(manipulator: &Manipulator, run: &Run) -> Result<Option<Vec<GratingSample>>, ContinuumError> {
+/// Returns the tensions of a manipulator's gratings in a run after all guards; `None` if either has none.
+fn guarded(manipulator: &Manipulator, run: &Run) -> Result<Option<Guarded>, ContinuumError> {
     match Gratings::from_file(&manipulator.file)? {
-        Some(gratings) if run.has_shifts() => gratings.read(run).map(Some),
+        Some(gratings) if run.has_shifts() => Guarded::read(manipulator.file.params(), &gratings, run).map(Some),
         _ => Ok(None),
     }
 }

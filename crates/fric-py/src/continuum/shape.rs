@@ -10,7 +10,7 @@ use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::{Manipulator, TendonRun, in_base_frame, measured};
+use super::{Manipulator, TendonRun, guarded, in_base_frame};
 use crate::arrays::{array, fixed, fixed_rows};
 use crate::errors::{Fault, Outcome};
 use crate::log;
@@ -52,17 +52,15 @@ pub fn continuum_shape(
         None => Selection::Spread(shapes),
     };
     let wanted = wanted_ways(ways)?;
-    let measured = py.detach(|| measured(manipulator, run))?;
-    let ways = py.detach(|| compare(params, run, measured.as_deref(), &wanted))?;
-    let picked = selection.places(run, measured.as_deref())?;
+    let guarded = py.detach(|| guarded(manipulator, run))?;
+    let measured = guarded.as_ref().map(|guarded| guarded.measured.as_slice());
+    let ways = py.detach(|| compare(params, run, measured, &wanted))?;
+    let picked = selection.places(run, measured)?;
     let name = &manipulator.file.tables().name;
-    let result = ShapeResult::new(name, params, run, measured.as_deref(), &ways, &picked);
+    let result = ShapeResult::new(name, params, run, guarded.as_ref(), &ways, &picked);
     let greatest_rad = result.greatest_bend_rad();
     if let Some(gratings) = Gratings::from_file(&manipulator.file)? {
         gratings.check_travel(params, greatest_rad)?;
-    }
-    if ways.iter().any(|way| way.way == Way::History) {
-        log::warn(py, &run.begin_warning().into_iter().collect::<Vec<_>>())?;
     }
     log::warn(py, &result.warnings(&ways))?;
     let provenance = manipulator.provenance("fric.continuum.shape", &files);

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::{intervals_s, intervals_text};
 use crate::friction::{FrictionDistribution, MeasuredFriction, distributions};
 use crate::gratings::GratingSample;
+use crate::guard::{Guard, Guarded};
 use crate::run::Run;
 
 /// `fric-continuum-friction/1`. Friction is positive if the base side is tighter, and null if it is unknown.
@@ -27,6 +28,8 @@ pub struct FrictionResult {
     pub directions_differ_s: Vec<[f64; 2]>,
     /// Gratings that were dead in some samples.
     pub bridged: Vec<BridgedGrating>,
+    /// What the guards of the gratings have found.
+    pub guards: Vec<Guard>,
     /// The values, sample by sample.
     pub series: FrictionSeries,
 }
@@ -104,13 +107,19 @@ impl BridgedGrating {
     }
 }
 
+/// Returns the warnings about the gratings of a run, one sentence each.
+pub(super) fn grating_warnings(bridged: &[BridgedGrating], guards: &[Guard], sample_count: usize) -> Vec<String> {
+    bridged.iter().map(|one| one.warning(sample_count)).chain(guards.iter().map(Guard::warning)).collect()
+}
+
 impl FrictionResult {
     /// Name and version of the format.
     pub const FORMAT: &str = "fric-continuum-friction/1";
 
     /// Computes the friction from the gratings. The tension at the base counts as exact.
     #[must_use]
-    pub fn new(manipulator: &str, run: &Run, measured: &[GratingSample]) -> Self {
+    pub fn new(manipulator: &str, run: &Run, guarded: &Guarded) -> Self {
+        let Guarded { measured, guards } = guarded;
         let distributions: Vec<FrictionDistribution> = distributions(run, measured).collect();
         let time_s: Vec<f64> = run.samples().iter().map(|sample| sample.time_s).collect();
         let differ: Vec<bool> = distributions.iter().map(|one| one.directions_differ).collect();
@@ -125,6 +134,7 @@ impl FrictionResult {
             directions_differ_samples: differ.iter().filter(|differ| **differ).count(),
             directions_differ_s: intervals_s(&time_s, differ.iter().copied()),
             bridged: BridgedGrating::all(run, measured),
+            guards: guards.clone(),
             series: FrictionSeries {
                 friction_n: each(|hole| hole.friction_n),
                 standard_error_n: each(|hole| hole.standard_error_n),
@@ -132,6 +142,12 @@ impl FrictionResult {
                 time_s,
             },
         }
+    }
+
+    /// Returns the warnings about the gratings, one sentence each.
+    #[must_use]
+    pub fn grating_warnings(&self) -> Vec<String> {
+        grating_warnings(&self.bridged, &self.guards, self.samples)
     }
 
     /// Returns a summary for people.

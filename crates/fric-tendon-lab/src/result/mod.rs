@@ -13,7 +13,7 @@ pub use shape::{ErrorResult, PickedShape, ShapeResult, WayErrors, WaySeries, Way
 pub use track::{TrackErrors, TrackResult, TrackSimulation};
 
 /// Returns the time intervals in which a condition holds, from the first to the last sample of each, s.
-fn intervals_s(time_s: &[f64], holds: impl Iterator<Item = bool>) -> Vec<[f64; 2]> {
+pub(crate) fn intervals_s(time_s: &[f64], holds: impl Iterator<Item = bool>) -> Vec<[f64; 2]> {
     let mut intervals: Vec<[f64; 2]> = Vec::new();
     let mut was = false;
     for (time_s, holds) in time_s.iter().zip(holds) {

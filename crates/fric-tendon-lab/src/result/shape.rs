@@ -6,10 +6,12 @@ use fric_lab::text::{table, wrapped};
 use fric_tendon::{ManipulatorOptions, ManipulatorParams, ShapeStatus};
 use serde::Serialize;
 
+use super::friction::grating_warnings;
 use super::{BridgedGrating, millimetres};
 use crate::base_noise::BaseNoise;
+use crate::begin::Begin;
 use crate::comparison::{WayShapes, is_beyond};
-use crate::gratings::GratingSample;
+use crate::guard::{Guard, Guarded};
 use crate::run::Run;
 use crate::shape_errors::{ShapeErrors, Way};
 
@@ -42,6 +44,8 @@ pub struct ShapeResult {
     pub shapes: Vec<PickedShape>,
     /// Gratings that were dead in some samples.
     pub bridged: Vec<BridgedGrating>,
+    /// What the guards of the gratings have found.
+    pub guards: Vec<Guard>,
     /// Times of all samples, s.
     pub time_s: Vec<f64>,
     /// Each friction model at all samples.
@@ -65,6 +69,9 @@ pub struct WayErrors {
     /// Noise that was taken off the tension at the base.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub base_noise: Option<BaseNoise>,
+    /// What the holes hold at the beginning of a run under tension.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub begin: Option<Begin>,
 }
 
 /// Distances between disks and markers.
@@ -156,7 +163,7 @@ impl ShapeResult {
         manipulator: &str,
         params: &ManipulatorParams,
         run: &Run,
-        measured: Option<&[GratingSample]>,
+        guarded: Option<&Guarded>,
         ways: &[WayShapes],
         picked: &[usize],
     ) -> Self {
@@ -196,6 +203,7 @@ impl ShapeResult {
                 all: (&way.errors).into(),
                 missing,
                 base_noise: way.base_noise,
+                begin: way.begin.clone(),
             }
         };
         let series = |way: &WayShapes| WaySeries {
@@ -210,7 +218,8 @@ impl ShapeResult {
             samples: run.samples().len(),
             ways: ways.iter().map(errors).collect(),
             shapes: picked.iter().filter_map(shape).collect(),
-            bridged: measured.map(|measured| BridgedGrating::all(run, measured)).unwrap_or_default(),
+            bridged: guarded.map(|guarded| BridgedGrating::all(run, &guarded.measured)).unwrap_or_default(),
+            guards: guarded.map(|guarded| guarded.guards.clone()).unwrap_or_default(),
             time_s: run.samples().iter().map(|sample| sample.time_s).collect(),
             series: ways.iter().map(series).collect(),
             is_prototype: is_prototype(params),
@@ -224,13 +233,20 @@ impl ShapeResult {
         last.iter().fold(0.0, |most, bend_rad| bend_rad.abs().max(most))
     }
 
-    /// Returns warnings, one sentence each.
+    /// Returns the warnings about the gratings, one sentence each.
+    #[must_use]
+    pub fn grating_warnings(&self) -> Vec<String> {
+        grating_warnings(&self.bridged, &self.guards, self.samples)
+    }
+
+    /// Returns all warnings, one sentence each.
     #[must_use]
     pub fn warnings(&self, ways: &[WayShapes]) -> Vec<String> {
-        let mut warnings: Vec<String> = self.bridged.iter().map(|one| one.warning(self.samples)).collect();
+        let mut warnings = self.grating_warnings();
         for way in ways {
             let name = way.way.name();
             warnings.extend(way.base_noise.map(|noise| noise.warning()));
+            warnings.extend(way.begin.as_ref().map(|begin| begin.warning(self.samples)));
             let beyond: Vec<ShapeStatus> =
                 way.shapes.iter().map(|shape| shape.status).filter(|status| is_beyond(*status)).collect();
             if let Some(status) = beyond.first() {

@@ -1,4 +1,5 @@
-//! One segment: a backbone of constant curvature between two disks, a straight tendon between their holes.
+//! One segment: a backbone of constant curvature between two disks, a straight tendon between their holes. The deflection under a transverse load
+//! comes on top ([`super::deflection`]).
 //!
 //! All quantities are functions of the segment's bend θ, through the Stumpff functions `c_k = Σ_m (−θ²)^m/(2m + k)!`: `c_0 = cos θ`, `c_1 = sin θ/θ`,
 //! `c_2 = (1 − cos θ)/θ²`, … They have no 0/0 in the straight segment, and `dc_k/dθ = θ(k·c_{k+2} − c_{k+1})`. Up to [`GREATEST_BEND_RAD`] the series

@@ -2,6 +2,7 @@
 
 pub mod arc;
 pub mod chain;
+pub mod deflection;
 pub mod load;
 pub mod newton;
 pub mod tangent;

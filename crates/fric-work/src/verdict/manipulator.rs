@@ -75,7 +75,7 @@ pub fn of_hole_frictions(result: &FrictionResult) -> Verdict {
             )
         },
     );
-    let mut todo: Vec<String> = result.bridged.iter().map(|one| one.warning(result.samples)).collect();
+    let mut todo = result.grating_warnings();
     todo.push("See what this friction does to the shape: fric-cli continuum shape.".to_owned());
     Verdict { tone: Tone::Mixed, sentence, todo }
 }
@@ -103,7 +103,7 @@ pub fn of_shapes(result: &ShapeResult) -> Verdict {
         }
         [] => (Tone::Mixed, "Shapes are predicted; how well is not known, for the run has no markers.".to_owned()),
     };
-    let mut todo: Vec<String> = result.bridged.iter().map(|one| one.warning(result.samples)).collect();
+    let mut todo = result.grating_warnings();
     if known.is_empty() {
         todo.push("Record markers on the disks to judge the shapes.".to_owned());
     }

@@ -26,10 +26,10 @@ pub fn run(arguments: &FrictionArguments) -> Outcome {
         ));
     }
     run.check_capacity(model.file.params().capacity_n(Tendon::Agonist)).map_err(|error| about(&paths.run, error))?;
-    let measured =
+    let guarded =
         read_gratings(&paths.run, &model, &run)?.ok_or_else(|| about(&paths.model, ContinuumError::NoGratings))?;
-    let result = FrictionResult::new(model.name(), &run, &measured);
-    warn_all(&result.bridged.iter().map(|one| one.warning(result.samples)).collect::<Vec<_>>());
+    let result = FrictionResult::new(model.name(), &run, &guarded);
+    warn_all(&result.grating_warnings());
     if !run.has_tension() {
         warn("the run has no `tension_base_n`: friction at hole 1 is not known");
     }

@@ -19,7 +19,8 @@ use fric_core::text_file;
 use fric_log::output::OutputFile;
 use fric_log::table::NumberTable;
 use fric_tendon::file::{FORMAT, ManipulatorFile};
-use fric_tendon_lab::gratings::{GratingSample, Gratings};
+use fric_tendon_lab::gratings::Gratings;
+use fric_tendon_lab::guard::Guarded;
 use fric_tendon_lab::{ContinuumError, Run, columns, corrected};
 use fric_work::provenance::Provenance;
 
@@ -111,8 +112,8 @@ fn read_run(arguments: &RunArguments) -> Outcome<(Model, Run)> {
     Ok((model, run))
 }
 
-/// Returns the tensions of the gratings in a run; `None` if it has no shifts, or the file no gratings.
-fn read_gratings(path: &Path, model: &Model, run: &Run) -> Outcome<Option<Vec<GratingSample>>> {
+/// Returns the tensions of the gratings in a run after all guards; `None` if it has no shifts, or the file no gratings.
+fn read_gratings(path: &Path, model: &Model, run: &Run) -> Outcome<Option<Guarded>> {
     let gratings = Gratings::from_file(&model.file)?;
     match gratings {
         Some(gratings) if run.has_shifts() => {
@@ -121,7 +122,7 @@ fn read_gratings(path: &Path, model: &Model, run: &Run) -> Outcome<Option<Vec<Gr
                             `[gratings]` in the manipulator file"
                     .to_owned()]);
             }
-            Ok(Some(gratings.read(run).map_err(|error| about(path, error))?))
+            Ok(Some(Guarded::read(model.file.params(), &gratings, run).map_err(|error| about(path, error))?))
         }
         _ => Ok(None),
     }

@@ -30,7 +30,8 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
     let (model, run) = read_run(paths)?;
     let params = model.file.params();
     run.check_capacity(params.capacity_n(Tendon::Agonist)).map_err(|error| about(&paths.run, error))?;
-    let measured = read_gratings(&paths.run, &model, &run)?;
+    let guarded = read_gratings(&paths.run, &model, &run)?;
+    let measured = guarded.as_ref().map(|guarded| guarded.measured.as_slice());
     let wants_others = wanted.iter().any(|way| *way != Way::Measured);
     match (&measured, run.has_shifts()) {
         (None, _) if !wanted.contains(&Way::Measured) => {}
@@ -41,23 +42,20 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
         }
         _ => {}
     }
-    let ways = compare(params, &run, measured.as_deref(), &wanted).map_err(|error| about(&paths.run, error))?;
+    let ways = compare(params, &run, measured, &wanted).map_err(|error| about(&paths.run, error))?;
     let selection = match at_s {
         Some(times_s) => Selection::At(times_s.clone()),
         None if *mixed => Selection::Mixed(usize::from(*shapes)),
         None => Selection::Spread(usize::from(*shapes)),
     };
-    let picked = selection.places(&run, measured.as_deref()).map_err(|error| match error {
+    let picked = selection.places(&run, measured).map_err(|error| match error {
         ContinuumError::NotWithinRun { .. } => Failure::usage(format!("--at-s: {error}")),
         error => about(&paths.run, error),
     })?;
     if picked.is_empty() {
         warn("no sample has friction of both directions beyond doubt: no shape is shown");
     }
-    let result = ShapeResult::new(model.name(), params, &run, measured.as_deref(), &ways, &picked);
-    if ways.iter().any(|way| way.way == Way::History) {
-        warn_all(&run.begin_warning().into_iter().collect::<Vec<_>>());
-    }
+    let result = ShapeResult::new(model.name(), params, &run, guarded.as_ref(), &ways, &picked);
     warn_all(&result.warnings(&ways));
     let greatest_rad = result.greatest_bend_rad();
     if let Some(Err(error)) = Gratings::from_file(&model.file)?.map(|one| one.check_travel(params, greatest_rad)) {

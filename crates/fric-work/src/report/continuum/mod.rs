@@ -60,7 +60,7 @@ pub fn friction(result: &FrictionResult, provenance: &Provenance) -> String {
     let shown = places.iter().filter_map(|place| Some((series.time_s.get(*place)?, series.friction_n.get(*place)?)));
     let content = html! {
         p.soft { (result.samples) " samples. Friction is positive where the base side is tighter." }
-        (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
+        (warnings(&result.grating_warnings()))
         (friction_by_hole(result))
         p { "Directions differ along the tendon in " (result.directions_differ_samples) " of " (result.samples) " samples." }
         section { h2 { "Friction over holes and time" } (map(result)) }
@@ -86,7 +86,7 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], provenance: &P
     let has_markers = result.ways.iter().any(|way| way.all.mean_mm.is_some());
     let content = html! {
         p.soft { (result.samples) " samples." }
-        (bridged(result.bridged.iter().map(|one| one.warning(result.samples))))
+        (warnings(&result.grating_warnings()))
         p { (keys(result.ways.iter().map(|way| way.way))) @if has_markers { (key("marker", "markers")) } }
         p.soft { "Dashed over the bars: the most that a hole holds by the model's μ; what is measured may be more." }
         (errors_by_way(result))
@@ -227,6 +227,6 @@ fn plain(title: String, verdict: Verdict, content: Markup, plots: Plots, provena
     Page { title, verdict, content, plots, cables: Vec::new(), provenance }.into_html()
 }
 
-fn bridged(warnings: impl Iterator<Item = String>) -> Markup {
-    html! { @for warning in warnings { p.unexplained { (warning) } } }
+fn warnings(sentences: &[String]) -> Markup {
+    html! { @for warning in sentences { p.unexplained { (warning) } } }
 }
