@@ -139,7 +139,8 @@ fn search(case: &Case, robot: &RobotFile) -> Option<CableDiscovery> {
     while let Some(sample) = log.simulation.next_cycle() {
         measurements.add(&sample);
     }
-    discover(&measurements, &DiscoverOptions::default(), &Progress::new()).into_iter().next()
+    let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new());
+    found.expect("a short log fits into memory").into_iter().next()
 }
 
 fn run(case: Case) -> Option<Outcome> {

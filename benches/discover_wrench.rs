@@ -107,9 +107,9 @@ impl Outcome {
 fn run(case: WrenchCase) -> Outcome {
     let log = case.log().expect("a case of the sweep makes a log");
     let begin = Instant::now();
-    let measurements = log.measured(&log.robot);
-    let all = Discoveries::of(&measurements, &DiscoverOptions::default(), &Progress::new())
-        .expect("a log that can be searched");
+    let samples = log.measured(&log.robot).into();
+    let all =
+        Discoveries::of(&samples, &DiscoverOptions::default(), &Progress::new()).expect("a log that can be searched");
     let text = all.extended(&log.robot_text, "sweep").expect("an extended file");
     let found = all.wrench().expect("a discovery by the wrench");
     let extended = RobotFile::parse(&text, "sweep").expect("an extended file is a robot file");

@@ -114,7 +114,8 @@ fn searched(user: &RobotFile, simulation: &mut Simulation) -> CableDiscovery {
     while let Some(sample) = simulation.next_cycle() {
         measurements.add(&sample);
     }
-    discover(&measurements, &DiscoverOptions::default(), &Progress::new()).remove(0)
+    let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new());
+    found.expect("a short log fits into memory").remove(0)
 }
 
 /// Whether the discovery tells the hidden effect, what it names, and the evidence for the hidden effect over the other, each beside the

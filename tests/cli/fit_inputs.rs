@@ -3,7 +3,7 @@
 use super::fit::{bench_log, platform_log, platform_robot};
 use super::logs::{Storage, rewrite, without};
 use super::simulate::bench_robot;
-use super::support::{Place, Run};
+use super::support::{Place, Run, command};
 
 /// A place with a log of the bench and its robot file.
 fn bench() -> Place {
@@ -24,6 +24,34 @@ fn platform() -> Place {
 /// Fits in vain.
 fn refused(place: &Place, arguments: &[&str]) -> Run {
     place.run_in_vain(&[&["fit"], arguments, &["-o", "fitted.toml", "--json", "fit.json"]].concat())
+}
+
+/// 64 MB of rows in few bytes: many cables, on which nothing happens.
+#[test]
+fn samples_beyond_memory_need_a_folder() {
+    let place = Place::empty();
+    let names: Vec<String> = (0..64).map(|cable| format!("c{cable}")).collect();
+    let mut robot = "format = \"fric-robot/1\"\nname = \"loom\"\ncycle_s = 0.001\n".to_owned();
+    let mut log = "time_s".to_owned();
+    for name in &names {
+        robot += &format!("[[cable]]\nname = \"{name}\"\npulleys = [{{ wrap_deg = 180.0, sensor = true }}]\n");
+        log += &format!(",{name}.force_n,{name}.length_m,{name}.reference_n");
+    }
+    for sample in 0..13_200 {
+        log += &format!("\n{}e-3{}", sample, ",1,1,1".repeat(names.len()));
+    }
+    place.write("robot.toml", robot);
+    place.write("log.csv", log);
+    for arguments in [&["fit", "log.csv", "-o", "fitted.toml"][..], &["discover", "log.csv"]] {
+        let mut command = command(&place.path(""), &[arguments, &["--model", "robot.toml"]].concat());
+        // The first is Unix's, the others are of Windows.
+        for variable in ["TMPDIR", "TMP", "TEMP"] {
+            command.env(variable, place.path("nowhere"));
+        }
+        let run = Run::new(command.output().unwrap());
+        run.fails(1, &["too many for memory", "temporary file in", "nowhere"]).advises(&["TMP", "72 free bytes"]);
+        assert!(!place.path("fitted.toml").exists());
+    }
 }
 
 #[test]

@@ -32,13 +32,14 @@ pub enum Command {
     Replay(ReplayArguments),
     /// Identify the friction parameters from the log of an identification run
     ///
-    /// All samples are kept in memory: some 200 bytes a sample and cable.
+    /// Samples beyond 64 MB go to a temporary file of 72 bytes a sample and cable, in the folder TMPDIR or else the system's; then no more cables are
+    /// worked on at once than memory allows. With `--reference wrench` all samples are kept in memory: some 200 bytes a sample and cable.
     #[command(after_help = "Examples:\n  fric-cli fit examples/mini-ipanema.mcap -o fitted.toml\n  \
                       fric-cli fit examples/mini-ipanema.mcap --reference wrench -o by-wrench.toml")]
     Fit(FitArguments),
     /// Find where the model and the measurement disagree, name the effect that is missing, and add it to the robot file
     ///
-    /// All samples are kept in memory: some 200 bytes a sample and cable.
+    /// Samples beyond 64 MB go to a temporary file, as in `fit`.
     #[command(after_help = "Examples:\n  fric-cli discover examples/mini-ipanema.mcap\n  \
                       fric-cli discover examples/mini-ipanema.mcap -o extended.toml --report discovery.html")]
     Discover(DiscoverArguments),
@@ -173,7 +174,7 @@ pub struct ReplayArguments {
     #[arg(long, value_name = "R.html", value_parser = a_file())]
     pub report: Option<PathBuf>,
     /// Correct the recording before it is compared, and tell what was wrong: a reference that comes late or runs by another clock, noise of the
-    /// lengths; reads the log twice and keeps its samples in memory
+    /// lengths; reads the log twice and keeps its samples, as `fit` does
     #[arg(long)]
     pub correct: bool,
     /// Show also the mean of the error's magnitude and the number of samples

@@ -7,8 +7,9 @@ use std::path::Path;
 
 use fric_core::ParamError;
 use fric_core::robot::file::RobotFileError;
+use fric_lab::discover::DiscoverError;
 use fric_lab::excite::ExcitationError;
-use fric_lab::fit::FitError;
+use fric_lab::fit::{FitError, StoreError};
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::SimulationError;
 use fric_log::log::LogError;
@@ -121,6 +122,21 @@ fn with_own_advice(error: &dyn Error) -> Failure {
     let mut letters = advice.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     Failure::new(cause).advise(format!("{first}{}.", letters.as_str().trim_end_matches('.')))
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        Self::new(format!("{error}: {}", reason(&error.source))).advise(StoreError::ADVICE)
+    }
+}
+
+impl From<DiscoverError> for Failure {
+    fn from(error: DiscoverError) -> Self {
+        match error {
+            DiscoverError::Fit(error) => error.into(),
+            DiscoverError::Store(error) => error.into(),
+        }
+    }
 }
 
 impl From<ContinuumError> for Failure {

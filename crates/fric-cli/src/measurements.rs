@@ -7,7 +7,7 @@ use std::time::Duration;
 use fric_core::{CableParams, Sample};
 use fric_lab::discover::{self, Corrections};
 use fric_lab::fit::readiness::{Holdings, Readiness};
-use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_lab::fit::{Progress, Reference, SampleStore, StoreError};
 use fric_log::log::Log;
 use fric_log::signals::{Part, Role, SignalError, SignalReader, TimesApart};
 
@@ -45,7 +45,7 @@ pub fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
 
 /// The data read from all logs.
 pub struct LogsRead<'a> {
-    pub measurements: Measurements<'a>,
+    pub samples: SampleStore<'a>,
     pub holdings: Holdings,
     /// A required signal whose times in all logs differ from those of the cable signal.
     apart: Option<TimesApart>,
@@ -77,12 +77,12 @@ pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Refer
     };
     let mut all_apart: Vec<Role> = [Role::Length, compared, Role::Pose].into_iter().filter(is_needed).collect();
     let mut apart = None;
-    let mut measurements = Measurements::new(&params, reference);
+    let mut samples = SampleStore::new(&params, reference);
     let mut all: Option<Holdings> = None;
     for log in logs {
-        measurements.start_log();
+        samples.start_log();
         let mut reader = SignalReader::new(Log::open(&[log])?, paths.clone(), &names).within(part);
-        let holdings = read_one(&mut reader, &mut measurements, names.len())?;
+        let holdings = read_one(&mut reader, &mut samples, names.len())?;
         warn_all(reader.cycle_warning(&model.robot).as_slice());
         all_apart.retain(|role| reader.times_apart(*role).is_some());
         apart = all_apart.first().and_then(|role| reader.times_apart(*role));
@@ -97,11 +97,14 @@ pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Refer
         }
     }
     let holdings = all.unwrap_or_else(|| Holdings::new(names.len()));
-    Ok(LogsRead { measurements, holdings, apart })
+    Ok(LogsRead { samples, holdings, apart })
 }
 
 /// Reads all rows with a progress bar; the inner error is that of the log.
-fn take_all(reader: &mut SignalReader, mut take: impl FnMut(&Sample<'_>)) -> Outcome<Result<(), SignalError>> {
+fn take_all(
+    reader: &mut SignalReader,
+    mut take: impl FnMut(&Sample<'_>) -> Result<(), StoreError>,
+) -> Outcome<Result<(), SignalError>> {
     let bar = progress::bytes(reader.log().total_bytes());
     let mut count = 0_u64;
     let end = loop {
@@ -111,7 +114,7 @@ fn take_all(reader: &mut SignalReader, mut take: impl FnMut(&Sample<'_>)) -> Out
         }
         count += 1;
         match reader.next_row() {
-            Ok(Some(sample)) => take(&sample),
+            Ok(Some(sample)) => take(&sample)?,
             Ok(None) => break Ok(()),
             Err(error) => break Err(error),
         }
@@ -120,11 +123,11 @@ fn take_all(reader: &mut SignalReader, mut take: impl FnMut(&Sample<'_>)) -> Out
     Ok(end)
 }
 
-fn read_one(reader: &mut SignalReader, measurements: &mut Measurements<'_>, cable_count: usize) -> Outcome<Holdings> {
+fn read_one(reader: &mut SignalReader, samples: &mut SampleStore<'_>, cable_count: usize) -> Outcome<Holdings> {
     let mut holdings = Holdings::new(cable_count);
     let end = take_all(reader, |sample| {
         holdings.add(sample);
-        measurements.add(sample);
+        samples.add(sample)
     })?;
     warn_all(&reader.log().warnings());
     end?;
@@ -137,11 +140,11 @@ pub fn corrections(parts: &[PathBuf], part: Part, model: &Model) -> Outcome<Corr
     let paths = model.signal_paths()?.with(Role::Wrench, None);
     let names = model.robot.cable_names();
     let params = model.robot.params();
-    let mut measurements = Measurements::new(&params, Reference::Forces);
+    let mut samples = SampleStore::new(&params, Reference::Forces);
     let mut reader = SignalReader::new(Log::open(parts)?, paths, &names).within(part);
     // An error occurs again in the actual reading.
-    let _ = take_all(&mut reader, |sample| measurements.add(sample))?;
-    watched("checking", "cables", |progress| discover::corrections(&measurements, progress))
+    let _ = take_all(&mut reader, |sample| samples.add(sample))?;
+    Ok(watched("checking", "cables", |progress| discover::corrections(&samples, progress))??)
 }
 
 /// Runs work with a progress bar, until it is done or Ctrl-C is pressed; `doing` names the work, and the bar counts its `steps`.

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use fric_core::robot::file::RobotFileError;
 use fric_core::{ParamError, SnapshotMismatch};
+use fric_lab::discover::DiscoverError;
 use fric_lab::excite::ExcitationError;
+use fric_lab::fit::StoreError;
 use fric_lab::hysteresis::HysteresisError;
 use fric_lab::simulate::{HiddenError, SimulationError};
 use fric_log::output;
@@ -217,6 +219,21 @@ impl From<output::OutputError> for Fault {
         match &error {
             output::OutputError::File { source, .. } => Self::output(format!("{error}: {}", reason(source))),
             error => Self::output(in_full(error)),
+        }
+    }
+}
+
+impl From<StoreError> for Fault {
+    fn from(error: StoreError) -> Self {
+        Self::output(format!("{error}: {}. {}", reason(&error.source), StoreError::ADVICE))
+    }
+}
+
+impl From<DiscoverError> for Fault {
+    fn from(error: DiscoverError) -> Self {
+        match error {
+            DiscoverError::Fit(error) => error.into(),
+            DiscoverError::Store(error) => error.into(),
         }
     }
 }

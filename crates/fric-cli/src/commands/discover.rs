@@ -53,13 +53,13 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     };
     // Missing data of some cables are reported only beside their verdicts.
     read.check(&readiness)?;
-    let options = DiscoverOptions { empirical: !no_empirical };
+    let options = DiscoverOptions { empirical: !no_empirical, series: report.is_some() };
     let what = if reference == Reference::Forces { "stages" } else { "searches" };
-    let measurements = read.measurements.with_zero_per_log(per_log);
-    let found = watched("discovering", what, |progress| Discoveries::of(&measurements, &options, progress))??;
+    let samples = read.samples.with_zero_per_log(per_log);
+    let found = watched("discovering", what, |progress| Discoveries::of(&samples, &options, progress))??;
 
     let names = logs.iter().map(|log| shown_path(log));
-    let starts: Vec<(String, f64)> = names.zip(measurements.log_starts_s()).collect();
+    let starts: Vec<(String, f64)> = names.zip(samples.log_starts_s()).collect();
     let outcome = DiscoverResult::new(&model.robot, &starts, &readiness, found.cables()).with_wrench(found.wrench());
     outcome.check_told()?;
     let mut files = Vec::new();

@@ -46,8 +46,9 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let read = read(logs, part, &model, Reference::Forces)?;
             let readiness = readiness::by_forces(&model.robot, &read.holdings);
             warn_all(&read.check(&readiness)?);
-            let measurements = read.measurements.with_zero_per_log(per_log);
-            let fit = watched("fitting", "cables", |progress| fit_cables_corrected(&measurements, &options, progress))?;
+            let samples = read.samples.with_zero_per_log(per_log);
+            let fit =
+                watched("fitting", "cables", |progress| fit_cables_corrected(&samples, &options, progress, drop))??;
             (Fits::Forces(fit.cables), fit.faults, readiness)
         }
         ReferenceName::Wrench => {
@@ -56,7 +57,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
             let read = read(logs, part, &model, Reference::Wrench)?;
             let readiness = readiness::by_wrench(&model.robot, &model.origin, &read.holdings);
             warn_all(&read.check(&readiness)?);
-            let fit = watched("fitting", "searches", |progress| fit_wrench(&read.measurements, &options, progress))??;
+            let measurements = read.samples.all()?;
+            let fit = watched("fitting", "searches", |progress| fit_wrench(&measurements, &options, progress))??;
             (Fits::Wrench(fit), Vec::new(), readiness)
         }
     };

@@ -1,6 +1,6 @@
 //! Discovery: where a model and a log disagree, which physical effect is missing, and how much the effect reduces the gap.
 //!
-//! The discovery works on one cable at a time, from [`Measurements`] with reference forces:
+//! The discovery works on one cable at a time, from a [`SampleStore`] with reference forces:
 //!
 //! 1. *Gap.* The given model is fitted to half of the log, in blocks; the other half is held out to judge (`split`). The noise is estimated from the
 //!    residual alone (`noise`).
@@ -34,10 +34,17 @@ pub mod words;
 pub(crate) mod workbench;
 mod wrench;
 
+use std::ops::Range;
+
 use fric_core::effects::Effect;
 use rayon::prelude::*;
+use thiserror::Error;
 
-use crate::fit::{CableRecord, FitError, Measurements, Progress, Reference, Stages};
+use self::faults::length_noise::{self, LengthNoise};
+use self::rest::neighbours::neighbours_of;
+
+use crate::fit::{CableRecord, FitError, Progress, Reference, SampleStore, Stages, StoreError};
+use crate::samples::record::Row;
 
 pub use extended::extended;
 pub use faults::correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
@@ -57,11 +64,13 @@ pub use wrench::{Geometry, GeometryFinding, WrenchDeviation, WrenchDiscovery, di
 pub struct DiscoverOptions {
     /// Whether a rest without a name may become a table.
     pub empirical: bool,
+    /// Whether the residuals of each cycle stay with the findings of a cable: 16 bytes a sample and cable.
+    pub series: bool,
 }
 
 impl Default for DiscoverOptions {
     fn default() -> Self {
-        Self { empirical: true }
+        Self { empirical: true, series: true }
     }
 }
 
@@ -69,29 +78,65 @@ impl Default for DiscoverOptions {
 struct Task<'a> {
     options: DiscoverOptions,
     own: usize,
-    records: &'a [CableRecord<'a>],
+    /// The record of the cable before anything but the noise of its length is corrected.
+    record: &'a CableRecord<'a>,
+    all: &'a AllCables<'a>,
     progress: &'a Progress,
     stages: Stages<'a>,
 }
 
+/// The cables of a robot without the noise of their lengths where it matters.
+struct AllCables<'a> {
+    samples: &'a SampleStore<'a>,
+    noise: Option<LengthNoise>,
+}
+
+impl AllCables<'_> {
+    /// Runs work on some cables, given their records before and after removing the noise of their lengths.
+    fn with<T>(
+        &self,
+        cables: Range<usize>,
+        work: impl FnOnce(&[CableRecord<'_>], &[CableRecord<'_>]) -> T,
+    ) -> Result<T, StoreError> {
+        let measurements = self.samples.load(cables.clone())?;
+        let given: Vec<CableRecord<'_>> = cables.filter_map(|cable| measurements.cable(cable)).collect();
+        let rows: Option<Vec<Vec<Row>>> = self.noise.as_ref().map(|noise| noise.steadied(&given));
+        Ok(work(&given, &length_noise::records(&given, self.noise.as_ref().zip(rows.as_deref()))))
+    }
+}
+
 /// Runs the discovery on a cable with its reference at its correct time: first as determined by the given model, then by the model with the effects
 /// that were missing.
-fn discover_retimed(record: &CableRecord<'_>, task: &Task<'_>) -> (CableDiscovery, Option<RecordingFault>) {
+fn discover_retimed(
+    record: &CableRecord<'_>,
+    task: &Task<'_>,
+) -> Result<(CableDiscovery, Option<RecordingFault>), StoreError> {
     let stop = task.progress.stop_flag();
     let Some((rows, fault)) = faults::timing::retimed(record, stop) else {
-        return (cable::discover_cable(record, task), None);
+        return Ok((cable::discover_cable(record, task)?, None));
     };
-    let found = cable::discover_cable(&record.with_signals(&rows), task);
+    let found = cable::discover_cable(&record.with_signals(&rows), task)?;
     let named = found.findings.iter().any(|finding| finding.effect != Effect::Empirical);
     // A table may represent the late reference itself.
     let values = rest::empirical::without_table(&found.after.values);
     let extended = record.params.with_values(&values).ok().filter(|_| named);
-    let Some(params) = extended else { return (found, Some(fault)) };
+    let Some(params) = extended else { return Ok((found, Some(fault))) };
     // A missing effect in the given model may have looked like a late reference.
-    match faults::timing::retimed(&record.with_params(&params), stop) {
-        Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), task), Some(fault)),
-        None => (cable::discover_cable(record, task), None),
-    }
+    Ok(match faults::timing::retimed(&record.with_params(&params), stop) {
+        Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), task)?, Some(fault)),
+        None => (cable::discover_cable(record, task)?, None),
+    })
+}
+
+/// The reason why a discovery says nothing.
+#[derive(Debug, Error)]
+pub enum DiscoverError {
+    /// The data allow none.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// The samples have no room.
+    #[error(transparent)]
+    Store(#[from] StoreError),
 }
 
 /// The findings, by the kind of reference.
@@ -104,19 +149,18 @@ pub enum Discoveries {
 }
 
 impl Discoveries {
-    /// Runs the discovery on all cables with the reference of the measurements. `options` apply to forces only: with the wrench nothing becomes a
-    /// table.
+    /// Runs the discovery on all cables with the reference of the samples. `options` apply to forces only: with the wrench nothing becomes a table.
     ///
     /// # Errors
-    /// Returns the [`FitError`] of [`discover_wrench`].
+    /// Returns the errors of [`discover`] and [`discover_wrench`].
     pub fn of(
-        measurements: &Measurements<'_>,
+        samples: &SampleStore<'_>,
         options: &DiscoverOptions,
         progress: &Progress,
-    ) -> Result<Self, FitError> {
-        Ok(match measurements.reference() {
-            Reference::Forces => Self::Forces(discover(measurements, options, progress)),
-            Reference::Wrench => Self::Wrench(Box::new(discover_wrench(measurements, progress)?)),
+    ) -> Result<Self, DiscoverError> {
+        Ok(match samples.reference() {
+            Reference::Forces => Self::Forces(discover(samples, options, progress)?),
+            Reference::Wrench => Self::Wrench(Box::new(discover_wrench(samples.all()?.as_ref(), progress)?)),
         })
     }
 
@@ -151,36 +195,49 @@ impl Discoveries {
 }
 
 /// Runs the discovery on every cable that has a reference.
-#[must_use]
+///
+/// # Errors
+/// Returns the [`StoreError`] of a log that does not fit into memory.
 pub fn discover(
-    measurements: &Measurements<'_>,
+    samples: &SampleStore<'_>,
     options: &DiscoverOptions,
     progress: &Progress,
-) -> Vec<CableDiscovery> {
-    let given: Vec<CableRecord<'_>> = measurements.cables().collect();
-    progress.begin(cable::STAGES * given.len());
-    let steadied = faults::length_noise::steadied(measurements, progress.stop_flag());
-    let records = faults::length_noise::records(&given, steadied.as_ref());
-    let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
-        let noisy = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
-        let stages = Stages::new(progress, cable::STAGES);
-        let task = Task { options: *options, own: place, records: &records, progress, stages };
-        let tared = tared::tared(record, progress.stop_flag());
-        let (mut found, late) = match &tared {
-            Some((rows, _)) => discover_retimed(&record.with_signals(rows), &task),
-            None => discover_retimed(record, &task),
+) -> Result<Vec<CableDiscovery>, StoreError> {
+    progress.begin(cable::STAGES * samples.robot().cables().len());
+    let all = AllCables { samples, noise: LengthNoise::of(samples, progress.stop_flag())? };
+    let mut cables = Vec::new();
+    for group in samples.groups() {
+        let discover = |given: &[CableRecord<'_>], records: &[CableRecord<'_>]| {
+            let of_cables = group.clone().into_par_iter().zip(given).zip(records);
+            let of_cable = |((own, given), record): ((usize, &CableRecord<'_>), &CableRecord<'_>)| {
+                let stages = Stages::new(progress, cable::STAGES);
+                discover_one(given, &Task { options: *options, own, record, all: &all, progress, stages })
+            };
+            of_cables.map(of_cable).collect::<Result<Vec<CableDiscovery>, StoreError>>()
         };
-        found.add_to_zeros(tared.as_ref().map_or(&[][..], |(_, changed_n)| changed_n));
-        for fault in late.into_iter().chain(noisy) {
-            cable::add_corrected_fault(&mut found, &given[place], fault, progress.stop_flag());
-        }
-        found
-    };
-    let mut cables: Vec<CableDiscovery> = records.par_iter().enumerate().map(of_cable).collect();
-    for (place, cable) in cables.iter_mut().enumerate() {
-        if let Some(unexplained) = &mut cable.unexplained {
-            unexplained.neighbours = rest::neighbours::neighbours_of(&cable.residual_after_n, place, &records);
-        }
+        cables.extend(all.with(group.clone(), discover)??);
     }
-    cables
+    Ok(cables)
+}
+
+/// Runs the discovery on one cable, whose record `given` still has the noise of its length.
+fn discover_one(given: &CableRecord<'_>, task: &Task<'_>) -> Result<CableDiscovery, StoreError> {
+    let (record, stop) = (task.record, task.progress.stop_flag());
+    let of_length = task.all.noise.as_ref().and_then(|noise| noise.faults.get(task.own)?.clone());
+    let tared = tared::tared(record, stop);
+    let (mut found, late) = match &tared {
+        Some((rows, _)) => discover_retimed(&record.with_signals(rows), task)?,
+        None => discover_retimed(record, task)?,
+    };
+    found.add_to_zeros(tared.as_ref().map_or(&[][..], |(_, changed_n)| changed_n));
+    for fault in late.into_iter().chain(of_length) {
+        cable::add_corrected_fault(&mut found, given, fault, stop);
+    }
+    if let Some(unexplained) = &mut found.unexplained {
+        unexplained.neighbours = neighbours_of(&found.residual_after_n, task)?;
+    }
+    if !task.options.series {
+        (found.residual_before_n, found.residual_after_n) = (Vec::new(), Vec::new());
+    }
+    Ok(found)
 }

@@ -29,7 +29,7 @@ const MISJUDGED_PERCENT: usize = 1;
 /// second one is usually the last.
 const MOST_TARES: usize = 4;
 
-/// Fits every cable that has a reference.
+/// Fits every cable that is held and has a reference.
 #[must_use]
 pub fn fit_cables(measurements: &Measurements<'_>, options: &FitOptions, progress: &Progress) -> Vec<CableFit> {
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
@@ -49,7 +49,8 @@ pub fn fit_cables(measurements: &Measurements<'_>, options: &FitOptions, progres
             }
         }
         let fits = searches.into_iter().map(|search| search.join().unwrap_or_else(|panic| resume_unwind(panic)));
-        fits.enumerate().flat_map(|(cable, fits)| fits.into_iter().map(move |fit| of_cable(fit, cable))).collect()
+        let of_cables = measurements.held().zip(fits);
+        of_cables.flat_map(|(cable, fits)| fits.into_iter().map(move |fit| of_cable(fit, cable))).collect()
     })
 }
 
@@ -272,7 +273,7 @@ pub(crate) fn cable_fits(
         .collect()
 }
 
-/// Returns the compensated force minus the reference with the fitted values, N, for every cable and sample; NaN without a reference.
+/// Returns the compensated force minus the reference with the fitted values, N, for every sample of the cables that are held; NaN without a reference.
 #[must_use]
 pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Vec<f64>> {
     let stop = AtomicBool::new(false);

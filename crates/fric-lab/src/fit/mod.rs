@@ -1,7 +1,7 @@
 //! Identification: the parameters of the friction model from the log of a run.
 //!
 //! A fit determines μ, σ, F_pv and ε of \[P\] 18, and the parameters of every effect of a cable, with standard errors and a list of what the log
-//! cannot determine. [`Measurements`] collects the samples; [`fit_cables`] compares with cable forces measured at the platform, and [`fit_wrench`]
+//! cannot determine. [`Measurements`] collects the samples, [`SampleStore`] those of long logs; [`fit_cables`] compares with cable forces measured at the platform, and [`fit_wrench`]
 //! compares with the external wrench, for all cables at once.
 //!
 //! [`readiness`] checks beforehand what a log lacks, [`result`] holds the fit for machines and people, and [`rewritten`] writes the values into a
@@ -29,6 +29,7 @@ pub use crate::certainty::determined::HALF_INTERVAL;
 pub use crate::certainty::directions::{OpenDirection, open_directions};
 pub use crate::samples::record::{CableRecord, LogZero, Measurements, Reference, Row};
 pub use crate::samples::selection::SampleCounts;
+pub use crate::samples::store::{SampleStore, StoreError};
 pub use crate::search::dual::Dual;
 pub use crate::search::optimizer::Termination;
 pub use crate::search::solve::Weighing;

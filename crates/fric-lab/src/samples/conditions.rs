@@ -1,5 +1,7 @@
 //! The operating conditions of every cycle: quantities that friction may depend on, and over which a disagreement with the model may be concentrated.
 
+use std::sync::Arc;
+
 use super::record::{CableRecord, Row};
 use crate::replay::Deviation;
 
@@ -37,8 +39,8 @@ pub struct Condition {
     pub signal: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Its value in each cycle; NaN if it has none.
-    pub values: Vec<f64>,
+    /// Its value in each cycle; NaN if it has none. Copies share them.
+    pub values: Arc<Vec<f64>>,
     /// Its division into bins.
     pub bins: Spacing,
 }
@@ -53,7 +55,7 @@ pub fn conditions(record: &CableRecord<'_>) -> Vec<Condition> {
                 *place = value;
             }
         }
-        conditions.push(Condition { signal, unit, values, bins });
+        conditions.push(Condition { signal, unit, values: Arc::new(values), bins });
     };
     let rows_to = |value: fn(&Row) -> f64| move |rows: &[Row]| rows.iter().map(value).collect::<Vec<f64>>();
     let cycle_s = record.cycle_s;
@@ -86,13 +88,13 @@ pub fn conditions(record: &CableRecord<'_>) -> Vec<Condition> {
 /// Returns the force at the platform as a condition. The sensor force contains what a model does not explain: a residual depends on it whatever it
 /// comes from.
 pub fn load(record: &CableRecord<'_>) -> Condition {
-    let values = record.rows.iter().map(|row| row.reference_n).collect();
+    let values = Arc::new(record.rows.iter().map(|row| row.reference_n).collect());
     Condition { signal: "load", unit: "N", values, bins: Spacing::Crowds(BINS) }
 }
 
 /// Returns the time as a condition, for warm-up and wear.
 pub fn time(record: &CableRecord<'_>) -> Condition {
-    let values = (0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect();
+    let values = Arc::new((0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect());
     Condition { signal: "time", unit: "s", values, bins: Spacing::Crowds(BINS) }
 }
 

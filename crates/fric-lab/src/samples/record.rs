@@ -1,9 +1,10 @@
 //! The data of a log for an identification: the signals of each cable as the cycle uses them, sample by sample.
 //!
 //! A log is conditioned once ([`fric_core::signals`]) and then evaluated many times. Memory: 80 bytes per sample and cable plus 8 per sample; a fit
-//! to the wrench needs 48 more per cable and 150 for the platform.
+//! to the wrench needs 48 more per cable and 150 for the platform. [`SampleStore`](super::store::SampleStore) holds rows that do not fit into memory.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use fric_core::effects::{UNKNOWN, sensor_offset};
 use fric_core::parameters::OFFSET;
@@ -85,7 +86,61 @@ pub struct Row {
     pub cycle: f64,
 }
 
+/// Count of the plain numbers of a row.
+pub(crate) const ROW_WIDTH: usize = 9;
+
 impl Row {
+    /// Returns the row as plain numbers with the same bits, together with another fact about its cycle: eight numbers, and one with a bit for each fact.
+    pub(crate) fn to_numbers(self, fact: bool) -> [f64; ROW_WIDTH] {
+        let Self { signals, pose_wrap, reference_n, pose_fault, cycle } = self;
+        let Conditioned {
+            sensor_force_n,
+            displacement_m,
+            speed_m_per_s,
+            length_m,
+            sensor_finite,
+            frozen,
+            jump,
+            motion_finite,
+        } = signals;
+        let PoseWrap { wrap_factor, traction_ratio } = pose_wrap;
+        let facts = [sensor_finite, frozen, jump, motion_finite, pose_fault, fact];
+        let bits = facts.iter().rev().fold(0_u8, |bits, fact| 2 * bits + u8::from(*fact));
+        let signals = [sensor_force_n, displacement_m, speed_m_per_s, length_m];
+        let [force, displacement, speed, length] = signals;
+        [force, displacement, speed, length, wrap_factor, traction_ratio, reference_n, cycle, f64::from(bits)]
+    }
+
+    /// Restores a row and the other fact from the plain numbers.
+    pub(crate) fn from_numbers(numbers: &[f64; ROW_WIDTH]) -> (Self, bool) {
+        let [
+            sensor_force_n,
+            displacement_m,
+            speed_m_per_s,
+            length_m,
+            wrap_factor,
+            traction_ratio,
+            reference_n,
+            cycle,
+            bits,
+        ] = *numbers;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "six bits")]
+        let bits = bits as u8;
+        let [sensor_finite, frozen, jump, motion_finite, pose_fault, fact] =
+            [0, 1, 2, 3, 4, 5].map(|bit| bits >> bit & 1 == 1);
+        let signals = Conditioned {
+            sensor_force_n,
+            displacement_m,
+            speed_m_per_s,
+            length_m,
+            sensor_finite,
+            frozen,
+            jump,
+            motion_finite,
+        };
+        (Self { signals, pose_wrap: PoseWrap { wrap_factor, traction_ratio }, reference_n, pose_fault, cycle }, fact)
+    }
+
     /// Whether a fit can use the cycle: no fault of sensor, motion or pose, and tension on the cable.
     #[must_use]
     pub fn is_sound(&self) -> bool {
@@ -104,16 +159,20 @@ pub struct PlatformRecord {
     pub wrenches: Vec<Option<Wrench>>,
 }
 
-/// The samples of one or several logs of a robot.
+/// The samples of one or several logs of a robot, in memory: of all its cables, or of those that a
+/// [`SampleStore`](super::store::SampleStore) has loaded.
 #[derive(Clone, Debug)]
 pub struct Measurements<'a> {
     robot: RobotParams<'a>,
     reference: Reference,
-    cables: Vec<Vec<Row>>,
+    /// The cables whose rows are here.
+    pub(super) held: Range<usize>,
+    /// The rows of the cables that are here.
+    pub(super) rows: Vec<Vec<Row>>,
     platform: PlatformRecord,
     per_log: Option<LogZero>,
     starts: Vec<usize>,
-    times_s: Vec<f64>,
+    times_s: Arc<Vec<f64>>,
     log_start: LogStart,
     clock: Clock,
     cycle: f64,
@@ -136,11 +195,12 @@ impl<'a> Measurements<'a> {
         Self {
             robot: *robot,
             reference,
-            cables: vec![Vec::new(); count],
+            held: 0..count,
+            rows: vec![Vec::new(); count],
             platform: PlatformRecord::default(),
             per_log: None,
             starts: Vec::new(),
-            times_s: Vec::new(),
+            times_s: Arc::default(),
             log_start: LogStart::default(),
             clock: Clock::new(robot.cycle_s()),
             cycle: BEFORE_FIRST,
@@ -177,12 +237,12 @@ impl<'a> Measurements<'a> {
         let first_nanos = *self.log_start.first_nanos.get_or_insert(sample.stamp_nanos);
         #[expect(clippy::cast_precision_loss, reason = "a duration")]
         let since_start_s = sample.stamp_nanos.saturating_sub(first_nanos) as f64 * 1e-9;
-        self.times_s.push(self.log_start.time_s + since_start_s);
+        Arc::make_mut(&mut self.times_s).push(self.log_start.time_s + since_start_s);
         self.cycle = next_cycle(self.cycle, elapsed_cycles);
         let pose = sample.pose.filter(Pose::is_usable);
         let limits = self.robot.monitor().limits();
         let states = self.signals.iter_mut().zip(&mut self.pose_wraps);
-        let cables = self.robot.cables().iter().zip(&mut self.cables).zip(states);
+        let cables = self.robot.cables().iter().zip(&mut self.rows).zip(states);
         for (index, ((params, rows), (state, wrap))) in cables.enumerate() {
             let input = sample.cables.get(index).copied().unwrap_or(NOTHING);
             let CableInput { sensor_force_n, length_m, speed_m_per_s } = input;
@@ -219,21 +279,31 @@ impl<'a> Measurements<'a> {
         self.reference
     }
 
-    /// Returns the same measurements with other cycles for some cables.
-    pub(crate) fn with_rows(&self, rows: &[Option<Vec<Row>>]) -> Self {
-        let mut changed = self.clone();
-        for (cable, rows) in changed.cables.iter_mut().zip(rows) {
-            if let Some(rows) = rows {
-                cable.clone_from(rows);
-            }
+    /// Returns the same measurements with these rows of some cables alone.
+    pub(crate) fn holding(&self, held: Range<usize>, rows: Vec<Vec<Row>>) -> Self {
+        Self {
+            held,
+            rows,
+            platform: PlatformRecord::default(),
+            starts: self.starts.clone(),
+            times_s: Arc::clone(&self.times_s),
+            clock: self.clock.clone(),
+            signals: self.signals.clone(),
+            pose_wraps: self.pose_wraps.clone(),
+            ..*self
         }
-        changed
+    }
+
+    /// Returns the same measurements with other rows for some of the cables that are here.
+    pub(crate) fn with_rows(&self, rows: Vec<Option<Vec<Row>>>) -> Self {
+        let rows = self.rows.iter().zip(rows).map(|(given, rows)| rows.unwrap_or_else(|| given.clone()));
+        Self { platform: self.platform.clone(), ..self.holding(self.held.clone(), rows.collect()) }
     }
 
     /// Returns the number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.cables.first().map_or(0, Vec::len)
+        self.times_s.len()
     }
 
     /// Whether there are no samples.
@@ -248,10 +318,10 @@ impl<'a> Measurements<'a> {
         self.starts.iter().map(|start| self.times_s.get(*start).copied().unwrap_or(0.0)).collect()
     }
 
-    /// Returns a cable's parameters and cycles; `None` past the robot's cables.
+    /// Returns a cable's parameters and cycles; `None` past the robot's cables, and for a cable that is not here.
     #[must_use]
     pub fn cable(&self, index: usize) -> Option<CableRecord<'_>> {
-        let (params, rows) = (self.robot.cables().get(index)?, self.cables.get(index)?);
+        let (params, rows) = (self.robot.cables().get(index)?, self.rows.get(index.checked_sub(self.held.start)?)?);
         let (starts, times_s) = (self.starts.as_slice(), self.times_s.as_slice());
         let reference_is_known = self.robot.known_reference().is_some();
         let cycle_s = self.robot.cycle_s();
@@ -271,9 +341,14 @@ impl<'a> Measurements<'a> {
         })
     }
 
-    /// Returns all cables in order.
+    /// Returns all cables that are here, in order.
     pub fn cables(&self) -> impl Iterator<Item = CableRecord<'_>> {
-        (0..self.cables.len()).filter_map(|index| self.cable(index))
+        self.held.clone().filter_map(|index| self.cable(index))
+    }
+
+    /// Returns the index of each cable that is here.
+    pub(crate) fn held(&self) -> Range<usize> {
+        self.held.clone()
     }
 
     /// Returns the platform; empty unless the reference is the wrench.

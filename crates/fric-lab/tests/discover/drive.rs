@@ -56,7 +56,7 @@ fn look() -> CableDiscovery {
             outside_wrench: None,
         });
     }
-    discover(&measurements, &DiscoverOptions::default(), &Progress::new()).remove(0)
+    discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0)
 }
 
 /// A curve of the sensor that shows the one load whatever the force, or a table over the load that does, agrees best with such a reference.

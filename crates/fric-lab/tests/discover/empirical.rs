@@ -4,7 +4,7 @@ use fric_core::effects::empirical::{Over, SHARE_PLACES, SIZE};
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Pose, Sample};
 use fric_lab::discover::{CableDiscovery, DiscoverOptions, Verdict, discover, extended};
-use fric_lab::fit::{Measurements, Parameter, Progress, Reference};
+use fric_lab::fit::{Measurements, Parameter, Progress, Reference, SampleStore};
 use fric_lab::simulate::SimulationOptions;
 use fric_lab::simulate::sweep::{Case, Group};
 
@@ -55,7 +55,7 @@ impl Log {
                 outside_wrench: None,
             });
         }
-        discover(&measurements, &options, &Progress::new()).remove(0)
+        discover(&measurements.into(), &options, &Progress::new()).unwrap().remove(0)
     }
 
     fn mean(&self, of: impl Fn(&CableInput) -> f64) -> f64 {
@@ -112,7 +112,7 @@ fn a_force_over_the_length_becomes_a_table_and_no_name() {
     assert!((twice_n / once_n - 1.0).abs() < 0.1, "{once_n} {twice_n}");
 
     // Without tables it stays as it is.
-    let without = log.look(&log.robot, DiscoverOptions { empirical: false });
+    let without = log.look(&log.robot, DiscoverOptions { empirical: false, ..DiscoverOptions::default() });
     assert_eq!((kinds(&without), without.verdict), (vec![], Verdict::Unexplained));
     assert!(closed(&without) < 0.2, "{}", closed(&without));
 }
@@ -147,17 +147,24 @@ fn the_force_of_another_cable_becomes_no_table() {
     let params = robot.params();
     let mut simulation = simulate(&all, &SimulationOptions { seed: 80_020, ..SimulationOptions::default() });
     let mut measurements = Measurements::new(&params, Reference::Forces);
+    let mut stored = SampleStore::new(&params, Reference::Forces).within(100_000);
     measurements.start_log();
+    stored.start_log();
     let mut cycle = 0;
     while let Some(sample) = simulation.next_cycle() {
         cycle += 1;
         if cycle % THINNED == 0 {
             let reference_n =
                 [sample.reference_force_n[0] + 0.05 * (sample.reference_force_n[1] - 6.0), sample.reference_force_n[1]];
-            measurements.add(&Sample { cables: &sample.cables[..2], reference_force_n: &reference_n, ..sample });
+            let sample = Sample { cables: &sample.cables[..2], reference_force_n: &reference_n, ..sample };
+            measurements.add(&sample);
+            stored.add(&sample).unwrap();
         }
     }
-    let found = discover(&measurements, &DiscoverOptions::default(), &Progress::new());
+    let look = |samples: &SampleStore<'_>| discover(samples, &DiscoverOptions::default(), &Progress::new()).unwrap();
+    let found = look(&measurements.into());
+    // The other cable is loaded from a file as well.
+    assert_eq!(format!("{:?}", look(&stored)), format!("{found:?}"));
     let tables = found.iter().filter(|cable| kinds(cable).contains(&"empirical")).count();
     assert_eq!(tables, 0, "{:?}", found.iter().map(|cable| (kinds(cable), cable.verdict)).collect::<Vec<_>>());
 }

@@ -46,7 +46,7 @@ fn look(logs: &[&[Point]], truth: &CaseTruth) -> CableDiscovery {
             });
         }
     }
-    discover(&measurements, &DiscoverOptions::default(), &Progress::new()).remove(0)
+    discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0)
 }
 
 fn assert_complete(found: &CableDiscovery, floor_n: f64) {

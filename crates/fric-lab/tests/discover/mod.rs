@@ -27,7 +27,7 @@ fn look_by(mut log: CaseLog, robot: &RobotFile) -> (CableDiscovery, CaseTruth) {
     while let Some(sample) = log.simulation.next_cycle() {
         measurements.add(&sample);
     }
-    (discover(&measurements, &DiscoverOptions::default(), &Progress::new()).remove(0), log.truth)
+    (discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0), log.truth)
 }
 
 /// Looks at a case and makes sure of the verdict, of the names, and of the noise floor.

@@ -50,7 +50,8 @@ impl Log {
         }
     }
 
-    fn samples(&self) -> impl Iterator<Item = Sample<'_>> {
+    /// Its samples in order.
+    pub fn samples(&self) -> impl Iterator<Item = Sample<'_>> {
         self.0.iter().map(|cycle| Sample {
             stamp_nanos: cycle.stamp_nanos,
             cables: &cycle.cables,

@@ -13,6 +13,7 @@ mod oracle;
 mod per_log;
 mod published;
 mod residual_function;
+mod store;
 mod together;
 mod undetermined;
 mod winch;

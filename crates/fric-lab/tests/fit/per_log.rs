@@ -143,8 +143,8 @@ fn each_log_has_the_zero_of_its_sensor() {
 }
 
 /// The first cable's discovery.
-fn look(measurements: &Measurements<'_>) -> CableDiscovery {
-    let found = discover(measurements, &DiscoverOptions::default(), &Progress::new()).remove(0);
+fn look(measurements: Measurements<'_>) -> CableDiscovery {
+    let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
     let kinds: Vec<&str> = found.findings.iter().map(|finding| finding.effect.kind()).collect();
     let zeros: Vec<(f64, f64)> = found.per_log.iter().flatten().map(|log| (log.value, log.standard_error)).collect();
     println!("{:?} {kinds:?} {:?} {zeros:?}", found.verdict, found.after.held_out_n.rms());
@@ -158,14 +158,14 @@ fn zeros_of_the_logs_are_no_effect() {
     for (zero, logs) in
         [(LogZero::Platform, logs(|zero_n| robot(zero_n, 0.0))), (LogZero::Sensor, logs(|zero_n| robot(0.0, zero_n)))]
     {
-        let found = look(&together(&logs, &given, Some(zero)));
+        let found = look(together(&logs, &given, Some(zero)));
         assert_eq!((found.findings.len(), found.verdict), (0, Verdict::Complete), "{zero:?}");
         assert!((found.after.held_out_n.rms().unwrap() / NOISE_N - 1.0).abs() < 0.05);
         for (log, truth_n) in found.per_log.iter().zip(ZEROS_N) {
             let log = log.unwrap();
             assert!((log.value - truth_n).abs() < 3.5 * log.standard_error && log.standard_error < 0.1, "{log:?}");
         }
-        let common = look(&together(&logs, &given, None));
+        let common = look(together(&logs, &given, None));
         assert!(common.verdict != Verdict::Complete && common.per_log.is_empty(), "{zero:?}");
     }
 }
@@ -180,7 +180,7 @@ fn an_effect_beside_the_zeros_is_named() {
         );
         bench(PULLEYS, &text)
     };
-    let found = look(&together(&logs(with_gain), &robot(0.0, 0.0), Some(LogZero::Platform)));
+    let found = look(together(&logs(with_gain), &robot(0.0, 0.0), Some(LogZero::Platform)));
     let kinds: Vec<&str> = found.findings.iter().map(|finding| finding.effect.kind()).collect();
     assert_eq!((kinds, found.verdict), (vec!["sensor_gain"], Verdict::Extended));
     let gain = parameter("sensor_gain.gain");

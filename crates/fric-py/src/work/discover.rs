@@ -3,7 +3,7 @@
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WhereResult};
 use fric_lab::discover::{CableDiscovery, DiscoverOptions, Discoveries};
 use fric_lab::fit::readiness;
-use fric_lab::fit::{Measurements, Reference};
+use fric_lab::fit::{Reference, SampleStore};
 use fric_work::provenance::Provenance;
 use fric_work::report::discovery;
 use pyo3::prelude::*;
@@ -70,17 +70,17 @@ pub fn discover(
     let zero = named_zero(per_log.as_deref(), &runs, reference)?;
     let lack = readiness::geometry(file, ORIGIN).filter(|_| reference == Reference::Wrench);
     lack.map_or(Ok(()), |lack| Err(lack.error()))?;
-    let mut measurements = Measurements::new(&file.params(), reference).with_zero_per_log(zero);
-    let holdings = runs.read(robot, &mut measurements, &mut watch)?;
+    let mut samples = SampleStore::new(&file.params(), reference).with_zero_per_log(zero);
+    let holdings = runs.read(robot, &mut samples, &mut watch)?;
     let readiness = match reference {
         Reference::Forces => readiness::to_discover(file, &holdings),
         Reference::Wrench => readiness::to_discover_by_wrench(file, ORIGIN, &holdings),
     };
     // Missing data of some cables are reported only beside their verdicts.
     readiness.check()?;
-    let options = DiscoverOptions { empirical };
-    let found = watch.fit(|progress| Discoveries::of(&measurements, &options, progress))??;
-    let logs: Vec<(String, f64)> = runs.names().into_iter().zip(measurements.log_starts_s()).collect();
+    let options = DiscoverOptions { empirical, ..DiscoverOptions::default() };
+    let found = watch.fit(|progress| Discoveries::of(&samples, &options, progress))??;
+    let logs: Vec<(String, f64)> = runs.names().into_iter().zip(samples.log_starts_s()).collect();
     let result = DiscoverResult::new(file, &logs, &readiness, found.cables()).with_wrench(found.wrench());
     result.check_told()?;
     let text = found.extended(&given.to_toml()?, ORIGIN)?;

@@ -3,7 +3,7 @@
 use fric_lab::discover::{CorrectedFit, fit_cables_corrected};
 use fric_lab::fit::readiness;
 use fric_lab::fit::result::{FitResult, Fits};
-use fric_lab::fit::{CableFit, FitOptions, Measurements, Reference, Weighing, fit_wrench, residuals_n, rewritten};
+use fric_lab::fit::{CableFit, FitOptions, Reference, SampleStore, Weighing, fit_wrench, residuals_n, rewritten};
 use fric_work::fit_report::fit_report;
 use fric_work::provenance::Provenance;
 use fric_work::report;
@@ -72,27 +72,32 @@ pub fn fit(
     log::warn(py, &file.warnings())?;
     let lack = readiness::geometry(file, ORIGIN).filter(|_| reference == Reference::Wrench);
     lack.map_or(Ok(()), |lack| Err(lack.error()))?;
-    let mut measurements = Measurements::new(&file.params(), reference).with_zero_per_log(zero);
-    let holdings = runs.read(robot, &mut measurements, &mut watch)?;
+    let mut samples = SampleStore::new(&file.params(), reference).with_zero_per_log(zero);
+    let holdings = runs.read(robot, &mut samples, &mut watch)?;
     let readiness = match reference {
         Reference::Forces => readiness::by_forces(file, &holdings),
         Reference::Wrench => readiness::by_wrench(file, ORIGIN, &holdings),
     };
     log::warn(py, &readiness.check()?)?;
-    let (fits, faults, corrected) = watch.fit(|progress| match reference {
-        Reference::Forces => {
-            let CorrectedFit { cables, faults, measurements } = fit_cables_corrected(&measurements, &options, progress);
-            Ok((Fits::Forces(cables), faults, measurements))
-        }
-        Reference::Wrench => {
-            fit_wrench(&measurements, &options, progress).map(|fit| (Fits::Wrench(fit), Vec::new(), None))
-        }
+    let (fits, faults, residuals_n) = watch.fit(|progress| -> Outcome<_> {
+        Ok(match reference {
+            Reference::Forces => {
+                let mut left_n = Vec::new();
+                let CorrectedFit { cables, faults } =
+                    fit_cables_corrected(&samples, &options, progress, |of_cable| left_n.push(of_cable))?;
+                (Fits::Forces(cables), faults, left_n)
+            }
+            Reference::Wrench => {
+                let measurements = samples.all()?;
+                let fit = fit_wrench(&measurements, &options, progress)?;
+                let left_n = residuals_n(&measurements, &fit.cables);
+                (Fits::Wrench(fit), Vec::new(), left_n)
+            }
+        })
     })??;
-    let measurements = corrected.unwrap_or(measurements);
     let result = FitResult::new(file, &runs.names(), &fits).with_faults(&faults);
     result.check_used()?;
     log::warn(py, &result.warnings(&fits, &readiness))?;
-    let residuals_n = py.detach(|| residuals_n(&measurements, fits.cables()));
     let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables())?;
     let cable = |(fit, residuals_n): (&CableFit, Vec<f64>)| {
         let count = fit.fitted.len();

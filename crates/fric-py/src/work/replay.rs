@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use fric_core::RobotParams;
 use fric_lab::columns::OutputColumns;
 use fric_lab::discover::{self, Corrections};
-use fric_lab::fit::{Measurements, Reference};
+use fric_lab::fit::{Reference, SampleStore};
 use fric_lab::replay::Replay;
 use fric_log::write::ReplayedLog;
 use fric_work::provenance::Provenance;
@@ -106,16 +106,16 @@ pub fn replay(
 
 /// Returns the corrections of a log before it is compared with its reference.
 fn corrections(py: Python<'_>, log: &Log, params: &RobotParams<'_>, watch: &mut Watch<'_>) -> Outcome<Corrections> {
-    let mut measurements = Measurements::new(params, Reference::Forces);
+    let mut samples = SampleStore::new(params, Reference::Forces);
     let mut cables = Vec::new();
     log.with_rows(py, |rows| {
         watch.work(rows.len(), |range| {
             for row in range {
                 let Some(sample) = rows.sample(row, &mut cables) else { break };
-                measurements.add(&sample);
+                samples.add(&sample)?;
             }
             Ok(())
         })
     })?;
-    watch.fit(|progress| discover::corrections(&measurements, progress))
+    Ok(watch.fit(|progress| discover::corrections(&samples, progress))??)
 }

@@ -1,7 +1,7 @@
 //! `residual_function`: the fit's problem, for other optimisers.
 
 use fric_lab::fit::readiness;
-use fric_lab::fit::{self, FitOptions, KeptFunction, Measurements, Reference};
+use fric_lab::fit::{self, FitOptions, KeptFunction, Reference, SampleStore};
 use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -201,10 +201,11 @@ pub fn residual_function(
     let runs = Runs::new(log)?;
     let place = robot.borrow().cable_index(cable)?;
     let file = robot.borrow().file.clone();
-    let mut measurements = Measurements::new(&file.params(), Reference::Forces);
-    let holdings = runs.read(robot, &mut measurements, &mut watch)?;
+    let mut samples = SampleStore::new(&file.params(), Reference::Forces);
+    let holdings = runs.read(robot, &mut samples, &mut watch)?;
     let readiness = readiness::by_forces(&file, &holdings);
     readiness.lack_of(place).map_or(Ok(()), |lack| Err(lack.error()))?;
+    let measurements = samples.load(place..place + 1)?;
     let function =
         watch.fit(|_| measurements.cable(place).map(|record| fit::ResidualFunction::new(&record, &options)))?;
     let function = function.filter(|function| function.count() > 0);

@@ -1,7 +1,7 @@
 //! The logs of a fit or a discovery.
 
 use fric_lab::fit::readiness::Holdings;
-use fric_lab::fit::{LogZero, Measurements, Parameter, Reference, zero_per_log};
+use fric_lab::fit::{LogZero, Parameter, Reference, SampleStore, zero_per_log};
 use fric_log::signals::Role;
 use fric_work::provenance::shown_path;
 use pyo3::exceptions::PyTypeError;
@@ -75,17 +75,17 @@ impl<'py> Runs<'py> {
         self.0.iter().flat_map(sources).collect()
     }
 
-    /// Reads all logs into the measurements, leaving one more part of the progress to the caller.
+    /// Reads all logs into the samples, leaving one more part of the progress to the caller.
     pub fn read(
         &self,
         robot: &Bound<'py, Robot>,
-        measurements: &mut Measurements<'_>,
+        samples: &mut SampleStore<'_>,
         watch: &mut Watch<'py>,
     ) -> Outcome<Holdings> {
         let py = robot.py();
-        let names = measurements.robot().cables().len();
+        let names = samples.robot().cables().len();
         // Signals that are not compared with are not read.
-        let (unread, compared) = match measurements.reference() {
+        let (unread, compared) = match samples.reference() {
             Reference::Forces => (Role::Wrench, Role::Reference),
             Reference::Wrench => (Role::Reference, Role::Wrench),
         };
@@ -96,7 +96,7 @@ impl<'py> Runs<'py> {
                 Ok(log) => log.clone(),
                 Err(_) => Bound::new(py, log::read(py, item, Some(robot), Some(unread), watch)?)?,
             };
-            let holdings = add(py, log.get(), robot, measurements, watch)?;
+            let holdings = add(py, log.get(), robot, samples, watch)?;
             if self.0.len() > 1 && !holdings.has_reference() && holdings.wrenched == 0 {
                 let text = format!(
                     "log {} of `log` has nothing to compare with on the signal `{}`",
@@ -135,24 +135,24 @@ fn add(
     py: Python<'_>,
     log: &Log,
     robot: &Bound<'_, Robot>,
-    measurements: &mut Measurements<'_>,
+    samples: &mut SampleStore<'_>,
     watch: &mut Watch<'_>,
 ) -> Outcome<Holdings> {
     log.check_cables(&robot.borrow().file.cable_names())?;
-    let cable_count = measurements.robot().cables().len();
+    let cable_count = samples.robot().cables().len();
     let (mut holdings, mut cables) = (Holdings::new(cable_count), Vec::new());
     let unknown = vec![f64::NAN; cable_count];
-    measurements.start_log();
+    samples.start_log();
     log.with_rows(py, |rows| {
         watch.work(rows.len(), |range| {
             for row in range {
                 let Some(mut sample) = rows.sample(row, &mut cables) else { break };
-                match measurements.reference() {
+                match samples.reference() {
                     Reference::Forces => sample.outside_wrench = None,
                     Reference::Wrench => sample.reference_force_n = &unknown,
                 }
                 holdings.add(&sample);
-                measurements.add(&sample);
+                samples.add(&sample)?;
             }
             Ok(())
         })

@@ -18,26 +18,26 @@ use crate::discover::rest::neighbours::neighbours_of;
 use crate::discover::rest::places::Place;
 use crate::discover::rest::{self, WORTH};
 use crate::discover::workbench::{self, Trial, Workbench};
-use crate::fit::{LogValue, SampleCounts};
+use crate::fit::{LogValue, SampleCounts, StoreError};
 use crate::replay::Deviation;
 use crate::samples::record::PerLog;
 use crate::search::problem::Problem;
 
 impl CableLog<'_> {
     /// Returns a table for a rest that has no name.
-    pub(super) fn table(&self, outcome: &Outcome, task: &Task<'_>) -> Option<Table> {
+    pub(super) fn table(&self, outcome: &Outcome, task: &Task<'_>) -> Result<Option<Table>, StoreError> {
         let Outcome { fitted, rest, stretch, .. } = outcome;
         if rest.is_noise && stretch.is_none() || has_table(&fitted.values) {
-            return None;
+            return Ok(None);
         }
         let bench = self.bench(self.counts);
         let places: Vec<Place> = stretch.iter().chain(&rest.places).cloned().collect();
         let model = workbench::Model { values: fitted.values, free: fitted.parameters.clone() };
-        let table = table(&bench, &model, rest.noise_n, &places)?;
+        let Some(table) = table(&bench, &model, rest.noise_n, &places) else { return Ok(None) };
         // Coupling from a neighbouring cable is not this cable's effect, however well a table over this cable's conditions fits it.
-        let neighbours = neighbours_of(&bench.residuals_n(&fitted.values), task.own, task.records);
+        let neighbours = neighbours_of(&bench.residuals_n(&fitted.values), task)?;
         let of_neighbour = neighbours.first().map_or(0.0, |neighbour| neighbour.correlation * neighbour.correlation);
-        (table.gain_ratio > of_neighbour).then_some(table)
+        Ok((table.gain_ratio > of_neighbour).then_some(table))
     }
 
     pub(super) fn report(

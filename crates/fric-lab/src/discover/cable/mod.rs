@@ -21,7 +21,7 @@ use crate::discover::rest::places::Excess;
 use crate::discover::workbench::{self, Trial, Workbench};
 use crate::discover::{Task, rest};
 use crate::effects::Around;
-use crate::fit::{CableRecord, FitOptions, Row};
+use crate::fit::{CableRecord, FitOptions, Row, StoreError};
 use crate::samples::conditions::{Condition, conditions, load, time};
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
@@ -38,14 +38,14 @@ pub const BELIEVED_RATIO: f64 = 1e-4;
 pub const STAGES: usize = 4;
 
 /// Runs the discovery on one cable.
-pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscovery {
+///
+/// # Errors
+/// Returns the [`StoreError`] of a log that does not fit into memory, if a signal of another cable is needed.
+pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<CableDiscovery, StoreError> {
     let stop = task.progress.stop_flag();
     if let Some(lack) = lack_of(record) {
-        return CableDiscovery::untold(
-            record,
-            crate::samples::selection::count(&crate::fit::cables::prepared(record)),
-            lack,
-        );
+        let samples = crate::samples::selection::count(&crate::fit::cables::prepared(record));
+        return Ok(CableDiscovery::untold(record, samples, lack));
     }
     let stretches = faulty_stretches(record);
     let mut standings = crate::fit::cables::prepared(record);
@@ -55,7 +55,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     task.stages.finish_one();
     let samples = crate::samples::selection::count(&paper.standings);
     if let Some(lack) = lack_of_samples(&samples, record.interval_s) {
-        return CableDiscovery::untold(record, samples, lack);
+        return Ok(CableDiscovery::untold(record, samples, lack));
     }
     let counts = crate::fit::cables::used(&paper.standings);
     let blocks = split(record);
@@ -93,7 +93,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     let signals = motion_and_load(record);
     let mut heard = Oscillations::lines_of(&left_by(&bench.try_one(&start).values), &times, &signals);
     let Some(mut outcome) = search(&heard, &mut start) else {
-        return CableDiscovery::untold(record, samples, lack_of_noise());
+        return Ok(CableDiscovery::untold(record, samples, lack_of_noise()));
     };
     task.stages.finish_one();
     // A wrong model may hide an oscillation, or leave an error that only looks like one.
@@ -126,11 +126,11 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> CableDiscove
     };
     faults.extend(step_n.map(coarse));
     let case = raw.with_rows(&rows);
-    let table = if task.options.empirical { case.table(&outcome, task) } else { None };
+    let table = if task.options.empirical { case.table(&outcome, task)? } else { None };
     let mut found = case.report(&outcome, table.as_ref(), samples, faults);
     found.per_log = case.log_values(&outcome, &found.after);
     found.add_to_zeros(&[]);
-    found
+    Ok(found)
 }
 
 /// A cable with its log and all that is known of each sample.

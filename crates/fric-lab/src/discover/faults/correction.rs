@@ -7,8 +7,11 @@ use fric_core::Sample;
 use rayon::prelude::*;
 
 use super::RecordingFault;
-use super::{length_noise, timing};
-use crate::fit::{CableFit, CableRecord, FitOptions, Measurements, Progress, Row, fit_cables, residuals_n};
+use super::length_noise::{self, LengthNoise};
+use super::timing;
+use crate::fit::{
+    CableFit, CableRecord, FitOptions, Measurements, Progress, Row, SampleStore, StoreError, fit_cables, residuals_n,
+};
 use crate::samples::noise::white_noise;
 
 /// A fit corrects the time of a reference only if the residual after the correction is at most this multiple of the white noise. Otherwise an effect
@@ -32,26 +35,32 @@ struct CableCorrection {
 }
 
 /// Finds the correctable faults of all cables that have a reference: a reference that is late or runs on another clock, and a noisy length.
-#[must_use]
-pub fn corrections(measurements: &Measurements<'_>, progress: &Progress) -> Corrections {
-    let given: Vec<CableRecord<'_>> = measurements.cables().collect();
-    progress.begin(given.len());
-    let steadied = length_noise::steadied(measurements, progress.stop_flag());
-    let records = length_noise::records(&given, steadied.as_ref());
-    let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
-        let noisy = steadied.as_ref().and_then(|steadied| steadied.faults.get(place)?.clone());
-        let late = timing::retimed(record, progress.stop_flag());
-        progress.finish_one();
-        let (rows, late) = late.unzip();
-        CableCorrection {
-            faults: late.into_iter().chain(noisy).collect(),
-            references_n: rows.map(|rows| rows.iter().map(|row| row.reference_n).collect()),
-        }
-    };
-    Corrections {
-        cables: records.par_iter().enumerate().map(of_cable).collect(),
-        length_noise_m: steadied.map(|steadied| steadied.length_play_m),
+///
+/// # Errors
+/// Returns the [`StoreError`] of a log that does not fit into memory.
+pub fn corrections(samples: &SampleStore<'_>, progress: &Progress) -> Result<Corrections, StoreError> {
+    progress.begin(samples.robot().cables().len());
+    let noise = LengthNoise::of(samples, progress.stop_flag())?;
+    let mut cables = Vec::new();
+    for group in samples.groups() {
+        let measurements = samples.load(group)?;
+        let given: Vec<CableRecord<'_>> = measurements.cables().collect();
+        let steadied = noise.as_ref().map(|noise| noise.steadied(&given));
+        let records = length_noise::records(&given, noise.as_ref().zip(steadied.as_deref()));
+        let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
+            let of_length =
+                noise.as_ref().and_then(|noise| noise.faults.get(measurements.held().start + place)?.clone());
+            let late = timing::retimed(record, progress.stop_flag());
+            progress.finish_one();
+            let (rows, late) = late.unzip();
+            CableCorrection {
+                faults: late.into_iter().chain(of_length).collect(),
+                references_n: rows.map(|rows| rows.iter().map(|row| row.reference_n).collect()),
+            }
+        };
+        cables.par_extend(records.par_iter().enumerate().map(of_cable));
     }
+    Ok(Corrections { cables, length_noise_m: noise.map(|noise| noise.length_play_m) })
 }
 
 impl Corrections {
@@ -84,29 +93,47 @@ impl Corrections {
 }
 
 /// A fit to references at their correct times.
-#[derive(Clone, Debug)]
-pub struct CorrectedFit<'a> {
+#[derive(Clone, Debug, Default)]
+pub struct CorrectedFit {
     /// The fits of the cables, in the robot's order.
     pub cables: Vec<CableFit>,
     /// The recording faults of each cable.
     pub faults: Vec<Vec<RecordingFault>>,
-    /// The corrected measurements that the cables were fitted to; `None` if nothing was wrong.
-    pub measurements: Option<Measurements<'a>>,
 }
 
 /// Runs [`fit_cables`], and runs it again with late references moved to their correct times. A cable keeps its first fit if that fit's residual is
-/// not correlated with the rate of the reference, or if the second fit leaves more than noise.
-#[must_use]
-pub fn fit_cables_corrected<'a>(
-    measurements: &Measurements<'a>,
+/// not correlated with the rate of the reference, or if the second fit leaves more than noise. `take_residual_n` takes the [`residuals_n`] of each cable
+/// in turn, with the reference that it was fitted to.
+///
+/// # Errors
+/// Returns the [`StoreError`] of a log that does not fit into memory.
+pub fn fit_cables_corrected(
+    samples: &SampleStore<'_>,
     options: &FitOptions,
     progress: &Progress,
-) -> CorrectedFit<'a> {
+    mut take_residual_n: impl FnMut(Vec<f64>),
+) -> Result<CorrectedFit, StoreError> {
+    let mut all = CorrectedFit::default();
+    for group in samples.groups() {
+        let (fits, left_n) = fit_group(&*samples.load(group)?, options, progress);
+        all.cables.extend(fits.cables);
+        all.faults.extend(fits.faults);
+        left_n.into_iter().for_each(&mut take_residual_n);
+    }
+    Ok(all)
+}
+
+/// Fits the cables that are held. Returns the residuals too.
+fn fit_group(
+    measurements: &Measurements<'_>,
+    options: &FitOptions,
+    progress: &Progress,
+) -> (CorrectedFit, Vec<Vec<f64>>) {
     let cables = fit_cables(measurements, options, progress);
     let left_n = residuals_n(measurements, &cables);
     let stop = progress.stop_flag();
     let retimed = |(cable, (fit, left_n)): (usize, (&CableFit, &Vec<f64>))| -> Option<(Vec<Row>, RecordingFault)> {
-        let record = measurements.cable(cable)?;
+        let record = measurements.cable(measurements.held().start + cable)?;
         if !timing::may_be_off(&record, left_n) {
             return None;
         }
@@ -115,31 +142,23 @@ pub fn fit_cables_corrected<'a>(
     };
     let found: Vec<_> = cables.par_iter().zip(&left_n).enumerate().map(retimed).collect();
     if found.iter().all(Option::is_none) {
-        return CorrectedFit { faults: vec![Vec::new(); cables.len()], cables, measurements: None };
+        return (CorrectedFit { faults: vec![Vec::new(); cables.len()], cables }, left_n);
     }
     let (rows, faults): (Vec<_>, Vec<_>) = found.into_iter().map(Option::unzip).unzip();
-    let corrected = measurements.with_rows(&rows);
+    let corrected = measurements.with_rows(rows);
     let again = fit_cables(&corrected, options, progress);
-    let is_corrected: Vec<bool> = residuals_n(&corrected, &again)
-        .iter()
-        .zip(&faults)
-        .map(|(left_n, fault)| fault.is_some() && is_noise(left_n))
-        .collect();
-    let kept = rows.into_iter().zip(&is_corrected).map(|(rows, is)| rows.filter(|_| *is));
-    CorrectedFit {
-        measurements: is_corrected.contains(&true).then(|| measurements.with_rows(&kept.collect::<Vec<_>>())),
-        faults: faults
-            .into_iter()
-            .zip(&is_corrected)
-            .map(|(fault, is)| fault.filter(|_| *is).into_iter().collect())
-            .collect(),
-        cables: cables
-            .into_iter()
-            .zip(again)
-            .zip(&is_corrected)
-            .map(|((first, again), is)| if *is { again } else { first })
-            .collect(),
+    let mut all = (CorrectedFit::default(), Vec::new());
+    let first = cables.into_iter().zip(left_n);
+    let again_n = residuals_n(&corrected, &again);
+    let again = again.into_iter().zip(again_n);
+    for ((first, again), fault) in first.zip(again).zip(faults) {
+        let fault = fault.filter(|_| is_noise(&again.1));
+        let (fit, left_n) = if fault.is_some() { again } else { first };
+        all.0.cables.push(fit);
+        all.0.faults.push(fault.into_iter().collect());
+        all.1.push(left_n);
     }
+    all
 }
 
 /// Whether a residual is little more than white noise.

@@ -12,62 +12,75 @@ use rayon::prelude::*;
 
 use super::{Fault, RecordingFault};
 use crate::discover::cable::held_out_squares;
-use crate::fit::{CableRecord, Measurements, Row};
+use crate::fit::{CableRecord, Row, SampleStore, StoreError};
 use crate::samples::record::PLAY_OF_NOISE;
 
 /// Minimum relative decrease of the sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
 const LEAST_GAIN: f64 = 0.005;
 
-/// Signals from which the noise of the lengths was removed.
-pub struct Steadied {
-    /// The cycles of each cable.
-    pub rows: Vec<Vec<Row>>,
+/// Noise of the lengths that matters.
+pub struct LengthNoise {
+    limits: SignalLimits,
     /// The play that keeps the noise out, m to either side.
     pub length_play_m: f64,
-    /// The fault of each cable; `None` where the noise of its length does not matter.
+    /// The fault of each cable of the robot; `None` where the noise of its length does not matter.
     pub faults: Vec<Option<RecordingFault>>,
 }
 
-/// Returns the records without the noise of their lengths where it matters.
-pub fn records<'a>(given: &[CableRecord<'a>], steadied: Option<&'a Steadied>) -> Vec<CableRecord<'a>> {
+/// Returns the records without the noise of their lengths where it matters, from that noise and the rows without it.
+pub fn records<'a>(
+    given: &[CableRecord<'a>],
+    steadied: Option<(&LengthNoise, &'a [Vec<Row>])>,
+) -> Vec<CableRecord<'a>> {
     match steadied {
-        Some(steadied) => {
-            let with_rows = given.iter().zip(&steadied.rows);
-            with_rows.map(|(given, rows)| given.behind_play(rows, steadied.length_play_m)).collect()
+        Some((noise, rows)) => {
+            given.iter().zip(rows).map(|(given, rows)| given.behind_play(rows, noise.length_play_m)).collect()
         }
         None => given.to_vec(),
     }
 }
 
-/// Removes the noise of the lengths from the measurements. Returns `None` if the noise does not matter or the robot's monitor already has a play.
-pub fn steadied(measurements: &Measurements<'_>, stop: &AtomicBool) -> Option<Steadied> {
-    let limits = measurements.robot().monitor().limits();
-    let records: Vec<CableRecord<'_>> = measurements.cables().collect();
-    let noise_that_matters_m = |record: &CableRecord<'_>| {
-        let noise_m = record.length_noise_m()?;
-        let limits = SignalLimits { length_noise_m: PLAY_OF_NOISE * noise_m, ..limits };
-        if noise_m <= 0.0 || limits.length_noise_m >= limits.length_jump_m {
-            return None;
+impl LengthNoise {
+    /// Finds the noise of the lengths. Returns `None` if it does not matter or the robot's monitor already has a play.
+    ///
+    /// # Errors
+    /// Returns the [`StoreError`] of a log that does not fit into memory.
+    pub fn of(samples: &SampleStore<'_>, stop: &AtomicBool) -> Result<Option<Self>, StoreError> {
+        let limits = samples.robot().monitor().limits();
+        if limits.length_noise_m > 0.0 {
+            return Ok(None);
         }
-        let rows = record.conditioned(&limits);
-        let [with, without] =
-            [record.behind_play(&rows, limits.length_noise_m), *record].map(|record| held_out_squares(&record, stop));
-        (with? < (1.0 - LEAST_GAIN) * without?).then_some(noise_m)
-    };
-    if limits.length_noise_m > 0.0 {
+        let mut noise_m: Vec<Option<f64>> = Vec::new();
+        for group in samples.groups() {
+            let measurements = samples.load(group)?;
+            let records: Vec<CableRecord<'_>> = measurements.cables().collect();
+            noise_m.par_extend(records.par_iter().map(|record| noise_that_matters_m(record, &limits, stop)));
+        }
+        // The monitor has one play for all cables.
+        let Some(greatest_m) = noise_m.iter().flatten().copied().reduce(f64::max) else { return Ok(None) };
+        let length_noise_m = PLAY_OF_NOISE * greatest_m;
+        let fault = |noise_m: Option<f64>| {
+            let parameters = vec![("noise_m", noise_m?), ("length_noise_m", length_noise_m)];
+            Some(RecordingFault { fault: Fault::NoisyLength, parameters, intervals_s: Vec::new() })
+        };
+        let faults = noise_m.into_iter().map(fault).collect();
+        Ok(Some(Self { limits: SignalLimits { length_noise_m, ..limits }, length_play_m: length_noise_m, faults }))
+    }
+
+    /// Returns the rows of some cables without the noise of their lengths.
+    pub fn steadied(&self, given: &[CableRecord<'_>]) -> Vec<Vec<Row>> {
+        given.iter().map(|record| record.conditioned(&self.limits)).collect()
+    }
+}
+
+fn noise_that_matters_m(record: &CableRecord<'_>, limits: &SignalLimits, stop: &AtomicBool) -> Option<f64> {
+    let noise_m = record.length_noise_m()?;
+    let limits = SignalLimits { length_noise_m: PLAY_OF_NOISE * noise_m, ..*limits };
+    if noise_m <= 0.0 || limits.length_noise_m >= limits.length_jump_m {
         return None;
     }
-    let noise_m: Vec<Option<f64>> = records.par_iter().map(noise_that_matters_m).collect();
-    // The monitor has one play for all cables.
-    let length_noise_m = PLAY_OF_NOISE * noise_m.iter().flatten().copied().reduce(f64::max)?;
-    let limits = SignalLimits { length_noise_m, ..limits };
-    let fault = |noise_m: Option<f64>| {
-        let parameters = vec![("noise_m", noise_m?), ("length_noise_m", length_noise_m)];
-        Some(RecordingFault { fault: Fault::NoisyLength, parameters, intervals_s: Vec::new() })
-    };
-    Some(Steadied {
-        length_play_m: length_noise_m,
-        rows: records.iter().map(|record| record.conditioned(&limits)).collect(),
-        faults: noise_m.into_iter().map(fault).collect(),
-    })
+    let rows = record.conditioned(&limits);
+    let [with, without] =
+        [record.behind_play(&rows, limits.length_noise_m), *record].map(|record| held_out_squares(&record, stop));
+    (with? < (1.0 - LEAST_GAIN) * without?).then_some(noise_m)
 }

@@ -1,5 +1,7 @@
 //! What oscillates in a residual by itself: lines and a vibration.
 
+use std::borrow::Cow;
+
 use super::RecordingFault;
 use super::lines::{Line, lines};
 use super::spectrum::{Times, Together};
@@ -62,14 +64,17 @@ impl Oscillations {
     }
 
     /// A record's rows with all of it taken off the reference: the residual is what the model says less the reference.
-    pub fn taken_off(&self, record: &CableRecord<'_>, times: &Times) -> Vec<Row> {
+    pub fn taken_off<'a>(&self, record: &CableRecord<'a>, times: &Times) -> Cow<'a, [Row]> {
+        if self.lines.is_empty() && self.vibration.is_none() {
+            return Cow::Borrowed(record.rows);
+        }
         let mut rows = record.rows.to_vec();
         for line in &self.lines {
             line.add_to(rows.iter_mut().map(|row| &mut row.reference_n), 1.0, times);
         }
         let shown_n = self.vibration.iter().flat_map(|(_, shown_n)| shown_n);
         rows.iter_mut().zip(shown_n).for_each(|(row, shown_n)| row.reference_n += shown_n);
-        rows
+        Cow::Owned(rows)
     }
 
     /// The faults of the recording that they are.

@@ -4,7 +4,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::fit::{CableRecord, Row};
+use crate::discover::Task;
+use crate::fit::{CableRecord, Row, StoreError};
 use crate::samples::split::{Block, split};
 
 /// Minimum correlation to report.
@@ -23,19 +24,24 @@ pub struct Neighbour {
     pub correlation: f64,
 }
 
-/// Returns the signals that correlate with the residual of one cable, N in each cycle, the strongest first. `own` is the index of that cable.
-pub fn neighbours_of(residual_n: &[f64], own: usize, records: &[CableRecord<'_>]) -> Vec<Neighbour> {
-    let Some(record) = records.get(own) else { return Vec::new() };
-    let (blocks, own_columns) = (split(record), columns(record));
+/// Returns the signals that correlate with the residual of the cable of a task, N in each cycle, the strongest first.
+///
+/// # Errors
+/// Returns the [`StoreError`] of a log that does not fit into memory.
+pub fn neighbours_of(residual_n: &[f64], task: &Task<'_>) -> Result<Vec<Neighbour>, StoreError> {
+    let (blocks, own_columns) = (split(task.record), columns(task.record));
     let mut neighbours = Vec::new();
-    for (cable, other) in records.iter().enumerate().filter(|(cable, _)| *cable != own) {
-        for (signal, column) in ["sensor_force", "speed"].into_iter().zip(columns(other)) {
+    let cable_count = task.all.samples.robot().cables().len();
+    for cable in (0..cable_count).filter(|cable| *cable != task.own) {
+        let columns = |_: &[CableRecord<'_>], records: &[CableRecord<'_>]| records.first().map(columns);
+        let Some(columns) = task.all.with(cable..cable + 1, columns)? else { continue };
+        for (signal, column) in ["sensor_force", "speed"].into_iter().zip(columns) {
             let correlation = correlation(residual_n, &own_columns, &column, &blocks);
             neighbours.extend(correlation.map(|correlation| Neighbour { cable, signal, correlation }));
         }
     }
     neighbours.sort_by(|one, other| other.correlation.abs().total_cmp(&one.correlation.abs()));
-    neighbours
+    Ok(neighbours)
 }
 
 /// Returns sensor force and speed of a cable in each cycle.

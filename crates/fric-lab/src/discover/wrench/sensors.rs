@@ -76,7 +76,7 @@ impl<'a> Sensors<'a> {
         };
         let faults = records.iter().zip(&of_cables).enumerate().map(faults).collect();
         let is_clean = rows.iter().all(Option::is_none);
-        let measurements = if is_clean { measurements.clone() } else { measurements.with_rows(&rows) };
+        let measurements = if is_clean { measurements.clone() } else { measurements.with_rows(rows) };
         Self { measurements, faults, is_faulty }
     }
 }

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use fric_core::signals::Conditioned;
-use fric_core::{CableParams, PoseWrap};
+use fric_core::CableParams;
 
 use super::{Cable, ResidualFunction};
-use crate::samples::record::Row;
+use crate::samples::record::{ROW_WIDTH, Row};
 use crate::search::vector::Parameter;
 
 /// The data of a residual function except the parameters of its cable.
@@ -30,7 +29,7 @@ pub struct KeptFunction {
 
 impl KeptFunction {
     /// Count of numbers per row.
-    pub const WIDTH: usize = 9;
+    pub const WIDTH: usize = ROW_WIDTH;
 }
 
 impl ResidualFunction {
@@ -41,7 +40,7 @@ impl ResidualFunction {
         KeptFunction {
             free: self.free.clone(),
             start: self.start.to_vec(),
-            rows: rows.iter().zip(&self.used).map(|(row, used)| numbers_of(row, *used)).collect(),
+            rows: rows.iter().zip(&self.used).map(|(row, used)| row.to_numbers(*used)).collect(),
             log_starts: starts.clone(),
             cycle_s: *cycle_s,
             interval_s: *interval_s,
@@ -54,57 +53,8 @@ impl ResidualFunction {
     #[must_use]
     pub fn from_kept(params: &CableParams, kept: KeptFunction) -> Option<Self> {
         let KeptFunction { free, start, rows, log_starts, cycle_s, interval_s, reference_is_known } = kept;
-        let (rows, used): (Vec<Row>, Vec<bool>) = rows.iter().map(row_of).unzip();
+        let (rows, used): (Vec<Row>, Vec<bool>) = rows.iter().map(Row::from_numbers).unzip();
         let cable = Cable { params: *params, rows, starts: log_starts, cycle_s, interval_s, reference_is_known };
         Some(Self { cable: Arc::new(cable), free, given: params.values(), start: start.try_into().ok()?, used })
     }
-}
-
-fn numbers_of(row: &Row, used: bool) -> [f64; KeptFunction::WIDTH] {
-    let Row { signals, pose_wrap, reference_n, pose_fault, cycle } = *row;
-    let Conditioned {
-        sensor_force_n,
-        displacement_m,
-        speed_m_per_s,
-        length_m,
-        sensor_finite,
-        frozen,
-        jump,
-        motion_finite,
-    } = signals;
-    let PoseWrap { wrap_factor, traction_ratio } = pose_wrap;
-    let facts = [sensor_finite, frozen, jump, motion_finite, pose_fault, used];
-    let bits = facts.iter().rev().fold(0_u8, |bits, fact| 2 * bits + u8::from(*fact));
-    let signals = [sensor_force_n, displacement_m, speed_m_per_s, length_m];
-    let [force, displacement, speed, length] = signals;
-    [force, displacement, speed, length, wrap_factor, traction_ratio, reference_n, cycle, f64::from(bits)]
-}
-
-fn row_of(numbers: &[f64; KeptFunction::WIDTH]) -> (Row, bool) {
-    let [
-        sensor_force_n,
-        displacement_m,
-        speed_m_per_s,
-        length_m,
-        wrap_factor,
-        traction_ratio,
-        reference_n,
-        cycle,
-        bits,
-    ] = *numbers;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "six bits")]
-    let bits = bits as u8;
-    let [sensor_finite, frozen, jump, motion_finite, pose_fault, used] =
-        [0, 1, 2, 3, 4, 5].map(|bit| bits >> bit & 1 == 1);
-    let signals = Conditioned {
-        sensor_force_n,
-        displacement_m,
-        speed_m_per_s,
-        length_m,
-        sensor_finite,
-        frozen,
-        jump,
-        motion_finite,
-    };
-    (Row { signals, pose_wrap: PoseWrap { wrap_factor, traction_ratio }, reference_n, pose_fault, cycle }, used)
 }

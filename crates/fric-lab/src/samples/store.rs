@@ -1,0 +1,197 @@
+//! Holds the rows of all cables: in memory while they are few, else in a temporary file from which cables are loaded in turn.
+//!
+//! The file has no name and ends with the process. It lies in the system's folder for temporary files, and holds 72 bytes a sample and cable, block by
+//! block: in each block the rows of the first cable, then those of the next. Rows come back with the same bits.
+//!
+//! A comparison with the wrench takes all cables at once, so its rows stay in memory.
+
+use std::borrow::Cow;
+use std::env;
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use fric_core::Sample;
+use fric_core::robot::RobotParams;
+use thiserror::Error;
+
+use super::record::{LogZero, Measurements, ROW_WIDTH, Reference, Row};
+
+/// Size of the rows that stay in memory, bytes: a minute and three quarters of eight cables at 1 kHz.
+const MEMORY_BYTES: usize = 64 << 20;
+/// Cables are loaded together while their rows take up at most this multiple of what stays in memory. With 4, six minutes of eight cables at 1 kHz are
+/// worked on together, as in memory, and an hour's cables one by one. Twice as much would add 256 MB to the memory of logs between.
+const LOADED_RATIO: usize = 4;
+/// Size of a row in the file, bytes.
+const ROW_BYTES: usize = ROW_WIDTH * size_of::<f64>();
+/// Number of rows that are read at once.
+const ROWS_AT_ONCE: usize = 4096;
+
+/// The temporary file of the samples cannot be made, written or read.
+#[derive(Debug, Error)]
+#[error("the samples are too many for memory, and a temporary file in {} cannot hold them", folder.display())]
+pub struct StoreError {
+    /// The folder of the temporary file.
+    pub folder: PathBuf,
+    /// The cause.
+    pub source: io::Error,
+}
+
+impl StoreError {
+    /// What to do, one sentence.
+    pub const ADVICE: &'static str = if cfg!(windows) {
+        "Set TMP to a writable folder on a disk with 72 free bytes a sample and cable."
+    } else {
+        "Set TMPDIR to a writable folder on a disk with 72 free bytes a sample and cable."
+    };
+
+    fn new(source: io::Error) -> Self {
+        Self { folder: env::temp_dir(), source }
+    }
+}
+
+/// The samples of one or several logs of a robot, of any length.
+#[derive(Debug)]
+pub struct SampleStore<'a> {
+    /// Conditions the samples, and holds those that are not in the file.
+    tail: Measurements<'a>,
+    memory_bytes: usize,
+    file: Option<Mutex<File>>,
+    /// Number of samples in each block of the file.
+    blocks: Vec<usize>,
+}
+
+impl<'a> SampleStore<'a> {
+    /// Creates an empty store for a robot.
+    #[must_use]
+    pub fn new(robot: &RobotParams<'a>, reference: Reference) -> Self {
+        Measurements::new(robot, reference).into()
+    }
+
+    /// Lets so many bytes of rows stay in memory before they go to the file.
+    #[must_use]
+    pub fn within(self, memory_bytes: usize) -> Self {
+        Self { memory_bytes, ..self }
+    }
+
+    /// Lets each log have a zero of its own, in all fits to forces.
+    #[must_use]
+    pub fn with_zero_per_log(self, zero: Option<LogZero>) -> Self {
+        Self { tail: self.tail.with_zero_per_log(zero), ..self }
+    }
+
+    /// Starts another log: the memory of a cable does not carry over.
+    pub fn start_log(&mut self) {
+        self.tail.start_log();
+    }
+
+    /// Adds the next sample of the log.
+    ///
+    /// # Errors
+    /// [`StoreError`] if the samples no longer fit into memory and the temporary file cannot take them. The store is then of no further use.
+    pub fn add(&mut self, sample: &Sample<'_>) -> Result<(), StoreError> {
+        self.tail.add(sample);
+        let row_count: usize = self.tail.rows.iter().map(Vec::len).sum();
+        if row_count * size_of::<Row>() > self.memory_bytes && self.tail.reference() == Reference::Forces {
+            self.move_to_file().map_err(StoreError::new)?;
+        }
+        Ok(())
+    }
+
+    fn move_to_file(&mut self) -> io::Result<()> {
+        let file = match self.file.take() {
+            Some(file) => file.into_inner().unwrap_or_else(PoisonError::into_inner),
+            None => tempfile::tempfile()?,
+        };
+        // A cable may have been loaded meanwhile.
+        let mut writer = BufWriter::with_capacity(ROWS_AT_ONCE * ROW_BYTES, file);
+        writer.seek(SeekFrom::End(0))?;
+        for row in self.tail.rows.iter().flatten() {
+            for number in row.to_numbers(false) {
+                writer.write_all(&number.to_le_bytes())?;
+            }
+        }
+        let file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        self.file = Some(Mutex::new(file));
+        self.blocks.push(self.tail.rows.first().map_or(0, Vec::len));
+        self.tail.rows.iter_mut().for_each(Vec::clear);
+        Ok(())
+    }
+
+    /// Returns the robot.
+    #[must_use]
+    pub fn robot(&self) -> &RobotParams<'a> {
+        self.tail.robot()
+    }
+
+    /// Returns the reference that is kept.
+    #[must_use]
+    pub fn reference(&self) -> Reference {
+        self.tail.reference()
+    }
+
+    /// Returns the start of each log, s. Several logs follow one another.
+    #[must_use]
+    pub fn log_starts_s(&self) -> Vec<f64> {
+        self.tail.log_starts_s()
+    }
+
+    /// Returns the cables in groups that fit into memory together, in order: all of them, if the file is not needed.
+    pub(crate) fn groups(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let cable_count = self.robot().cables().len();
+        let bytes = self.tail.len() * size_of::<Row>();
+        let most = if self.file.is_some() { LOADED_RATIO * self.memory_bytes / bytes.max(1) } else { cable_count };
+        // Groups of nearly the same size.
+        let group_count = cable_count.div_ceil(most.max(1)).max(1);
+        (0..group_count).map(move |group| group * cable_count / group_count..(group + 1) * cable_count / group_count)
+    }
+
+    /// Returns the measurements with the rows of these cables in memory; of all cables, if the file is not needed.
+    ///
+    /// # Errors
+    /// [`StoreError`] if the temporary file cannot be read.
+    pub fn load(&self, cables: Range<usize>) -> Result<Cow<'_, Measurements<'a>>, StoreError> {
+        let Some(file) = &self.file else { return Ok(Cow::Borrowed(&self.tail)) };
+        let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+        let rows: io::Result<Vec<Vec<Row>>> = cables.clone().map(|cable| self.rows(&mut file, cable)).collect();
+        Ok(Cow::Owned(self.tail.holding(cables, rows.map_err(StoreError::new)?)))
+    }
+
+    /// Returns the measurements with the rows of all cables in memory.
+    ///
+    /// # Errors
+    /// [`StoreError`] if the temporary file cannot be read.
+    pub fn all(&self) -> Result<Cow<'_, Measurements<'a>>, StoreError> {
+        self.load(0..self.robot().cables().len())
+    }
+
+    /// Reads the rows of a cable.
+    fn rows(&self, file: &mut File, cable: usize) -> io::Result<Vec<Row>> {
+        let cable_count = self.robot().cables().len();
+        let mut rows = Vec::with_capacity(self.tail.len());
+        let mut bytes = Vec::with_capacity(ROWS_AT_ONCE * ROW_BYTES);
+        let mut block_start = 0;
+        for count in &self.blocks {
+            let row = (block_start + cable * count) as u64;
+            file.seek(SeekFrom::Start(row * ROW_BYTES as u64))?;
+            for from in (0..*count).step_by(ROWS_AT_ONCE) {
+                bytes.resize(ROWS_AT_ONCE.min(count - from) * ROW_BYTES, 0);
+                file.read_exact(&mut bytes)?;
+                let (numbers, _) = bytes.as_chunks::<{ size_of::<f64>() }>();
+                let (of_rows, _) = numbers.as_chunks::<ROW_WIDTH>();
+                rows.extend(of_rows.iter().map(|row| Row::from_numbers(&row.map(f64::from_le_bytes)).0));
+            }
+            block_start += cable_count * count;
+        }
+        rows.extend(self.tail.rows.get(cable).into_iter().flatten());
+        Ok(rows)
+    }
+}
+
+impl<'a> From<Measurements<'a>> for SampleStore<'a> {
+    fn from(measurements: Measurements<'a>) -> Self {
+        Self { tail: measurements, memory_bytes: MEMORY_BYTES, file: None, blocks: Vec::new() }
+    }
+}
