@@ -157,6 +157,10 @@ fn check(case: &Case, label: &str, place: &Place, old: &Outcome, undisturbed: &O
             "{label}: {name} is left"
         );
     }
+    // The compressor's wrapper has no error for a context that gets no memory.
+    if label.contains("memory") && stderr.contains("zstd returned null pointer when creating new context") {
+        return;
+    }
     if was_aborted {
         // Rust ends the process where it gets no memory, and so does the C library where it has to keep in mind what a thread ends with.
         const ENDS: [&str; 2] = ["memory allocation of ", "failed to register TLS destructor: out of memory"];
