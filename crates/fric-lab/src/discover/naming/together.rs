@@ -3,22 +3,27 @@
 //! Each of several effects may look like something else as long as the others are missing. An asymmetry of the friction and a drift of the sensor, of
 //! like size, leave each other an error that changes with the time and with the direction; alone, neither helps on the samples held out. So where no
 //! candidate may enter alone, sets of two and three are tried, including what was refused. To choose among the thousands of them, each candidate is taken
-//! for the force that it adds where it fits best alone, and the sums of squares of all sets follow from the inner products of these forces. Those sets
-//! in which each effect has strong evidence beside the others are fitted, the best first, and the first enters whose effects can all stay, with those
-//! that the model had.
+//! for the force that it adds where it fits best alone, and the sums of squares of all sets follow from the inner products of these forces. The memory
+//! that weakens the evidence is that of what a whole set leaves: as long as anything is missing, the residual remembers that. Those sets in which each
+//! effect has strong evidence beside the others are fitted, the best first, and the first enters whose effects can all stay, with those that the model
+//! had.
 
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 
 use super::entry::MOST_EFFECTS;
-use super::evidence::{delta_bic, inflation};
+use super::evidence::{delta_bic, inflations};
 use super::projection::{Columns, less_projection};
 use super::{NEGLIGIBLE, STRONG_BIC, Search};
 use crate::candidates::catalogue::{fitted, starts};
 use crate::discover::workbench::Trial;
 
+/// Maximum number of effects in a set.
+const MOST_TOGETHER: usize = 3;
 /// Number of sets that are fitted. In the four logs of a sweep in which one entered it was the first; on the real drive EMPS the second explains most.
 const MOST_SETS: usize = 3;
+/// Number of sets of which the memory is computed, those with the most evidence without any.
+const MOST_WEIGHED: usize = 32;
 /// A candidate that adds less than this fraction of the sum of squares adds nothing.
 const NOTHING: f64 = 1e-9;
 
@@ -28,8 +33,6 @@ struct Candidate {
     /// Training sum of squares of its fit alone, N².
     training: f64,
     added_n: Vec<f64>,
-    /// Factor by which memory in the residual weakens the evidence, at least 1.
-    inflation: f64,
 }
 
 impl Search<'_, '_> {
@@ -66,8 +69,8 @@ impl Search<'_, '_> {
         let candidates: Vec<Candidate> =
             round.into_iter().filter_map(|(effect, trial)| self.candidate(model, effect, trial, &residual_n)).collect();
         let added_n: Vec<Vec<f64>> = candidates.iter().map(|of| of.added_n.clone()).collect();
-        let Some(columns) = less_projection(&problem, &model.values, &added_n) else { return Vec::new() };
-        let columns = Columns::new(&columns, 0, &residual_n);
+        let Some(signals) = less_projection(&problem, &model.values, &added_n) else { return Vec::new() };
+        let columns = Columns::new(&signals, 0, &residual_n);
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let count = self.bench.count(false) as f64;
         let left = |places: &[usize]| model.training - columns.gain(places);
@@ -76,17 +79,27 @@ impl Search<'_, '_> {
             let parameters = fitted(candidates[place].effect).len() as f64;
             parameters
         };
-        let evidence = |places: &[usize], place: usize| {
-            let others: Vec<usize> = places.iter().copied().filter(|other| *other != place).collect();
-            delta_bic(count / candidates[place].inflation, left(places) / left(&others), parameters(place))
+        // The weakest evidence in a set, if memory leaves so many times fewer samples for each effect.
+        let weakest = |places: &[usize], memories: &[f64]| {
+            let of_place = |(place, memory): (&usize, &f64)| {
+                let others: Vec<usize> = places.iter().copied().filter(|other| other != place).collect();
+                delta_bic(count / memory, left(places) / left(&others), parameters(*place))
+            };
+            places.iter().zip(memories).map(of_place).fold(f64::NEG_INFINITY, f64::max)
         };
-        let weakest =
-            |places: &[usize]| places.iter().map(|place| evidence(places, *place)).fold(f64::NEG_INFINITY, f64::max);
+        let by_evidence = |(one, _): &(f64, Vec<usize>), (other, _): &(f64, Vec<usize>)| one.total_cmp(other);
         let mut sets: Vec<(f64, Vec<usize>)> = subsets(candidates.len(), room)
-            .map(|places| (weakest(&places), places))
+            .map(|places| (weakest(&places, &[1.0; MOST_TOGETHER]), places))
             .filter(|(weakest, _)| *weakest < -STRONG_BIC)
             .collect();
-        sets.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        sets.sort_by(by_evidence);
+        sets.truncate(MOST_WEIGHED);
+        for (evidence, places) in &mut sets {
+            let of_set: Vec<&[f64]> = places.iter().map(|place| signals[*place].as_slice()).collect();
+            *evidence = weakest(places, &inflations(&of_set, &residual_n));
+        }
+        sets.retain(|(weakest, _)| *weakest < -STRONG_BIC);
+        sets.sort_by(by_evidence);
         let of_set = |(_, mut places): (f64, Vec<usize>)| {
             places.sort_by(|one, other| candidates[*one].training.total_cmp(&candidates[*other].training));
             places.into_iter().map(|place| candidates[place].effect).collect()
@@ -105,11 +118,8 @@ impl Search<'_, '_> {
             squares > NOTHING * model.training
         };
         let starts = starts(effect, &model.values, &self.around, &self.bench.record);
-        let mut points = std::iter::once(trial.values).chain(starts).map(|values| (values, adds(&values)));
-        let (values, added_n) = points.find(|(_, added_n)| is_something(added_n))?;
-        let training = trial.training;
-        let inflation = inflation(self.bench, &Trial { values, ..trial }, &fitted(effect));
-        Some(Candidate { effect, training, added_n, inflation })
+        let added_n = std::iter::once(trial.values).chain(starts).map(|values| adds(&values)).find(is_something)?;
+        Some(Candidate { effect, training: trial.training, added_n })
     }
 }
 
