@@ -1,8 +1,10 @@
 //! A reference that is late, or whose clock runs at another rate than the winch's.
 //!
 //! A time error shows in the residual as the rate of the reference: a reference that is late by ε leaves `ε·dF/dt`. Delay and skew are improved
-//! iteratively from this part of the residual, after removing what the model's parameters can compensate. They are kept if the model then agrees
-//! better on held-out samples. An early reference is no such fault: it indicates a sensor that lags, which concerns the machine.
+//! iteratively from this part of the residual, after removing what the model's parameters can compensate. They are kept if the evidence is strong,
+//! weakened by the memory of what a first step leaves, and the model then agrees better on held-out samples. A gain that is wrong, for example, makes
+//! much of a ramp of the load look late, but leaves a rest that lasts; once the gain has its name, nothing is late. An early reference is no such fault:
+//! it indicates a sensor that lags, which concerns the machine.
 
 use std::sync::atomic::AtomicBool;
 
@@ -10,6 +12,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Fault, RecordingFault};
 use crate::discover::cable::given_to;
+use crate::discover::naming::STRONG_BIC;
+use crate::discover::naming::evidence::{delta_bic, inflations};
 use crate::discover::naming::projection::less_projection;
 use crate::discover::workbench::{Model, Trial, Workbench};
 use crate::fit::{CableRecord, Row};
@@ -31,6 +35,9 @@ const RATE_SAMPLES: usize = 5;
 /// delay whose rate the parameters compensate for to 90 % is missed.
 const SUSPICIOUS_SHARE: f64 = 0.05 * LEAST_GAIN;
 
+/// Maximum skew. Quartz clocks agree to 1e-4, loops that are timed by software to a hundredth; what goes faster apart is no clock.
+const MOST_SKEW: f64 = 0.02;
+
 /// The time error of a reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Shift {
@@ -38,6 +45,15 @@ struct Shift {
     delay_s: f64,
     /// Growth of the delay per second, dimensionless.
     skew: f64,
+}
+
+/// A linear step towards the correct time.
+struct Step {
+    shift: Shift,
+    /// Decrease of the sum of squares, N².
+    gain: f64,
+    /// BIC with the step minus that without, weakened by the memory of what it leaves.
+    delta_bic: f64,
 }
 
 /// The result of correcting one kind of shift.
@@ -58,18 +74,18 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>,
     let (blocks, measured) = (split(record), measured(record));
     let case = Case { record: *record, counts: &counts, blocks: &blocks, measured: &measured, stop };
     let as_it_is = case.bench(record.rows).try_one(&start);
-    let (_, gain) = case.improvement(record.rows, &as_it_is, true)?;
-    if gain < LEAST_GAIN * as_it_is.training {
+    let is_strong = |step: &Step, of: &Trial| step.gain >= LEAST_GAIN * of.training && step.delta_bic < -STRONG_BIC;
+    if !is_strong(&case.improvement(record.rows, &as_it_is, true)?, &as_it_is) {
         return None;
     }
     let late = case.corrected(&as_it_is, false)?;
     // A value interpolated between two samples has less noise than either. On held-out samples a shift by a fraction of an interval therefore looks
     // better than one by whole intervals, and a skew looks better than none. So the rest after the delay must still be correlated with the rate.
-    let (_, more) = case.improvement(&late.rows, &late.trial, true)?;
-    let may_be_skewed = more >= LEAST_GAIN * late.trial.training;
+    let may_be_skewed = is_strong(&case.improvement(&late.rows, &late.trial, true)?, &late.trial);
     let skewed = if may_be_skewed { Some(case.corrected(&as_it_is, true)?) } else { None };
     let gains = |from: &Trial, to: &Trial| to.held_out < (1.0 - LEAST_GAIN) * from.held_out;
     let fault = |fault, parameters| RecordingFault { fault, parameters, intervals_s: Vec::new() };
+    let skewed = skewed.filter(|skewed| skewed.shift.skew.abs() <= MOST_SKEW);
     let skewed = skewed.filter(|skewed| gains(&late.trial, &skewed.trial) && gains(&as_it_is, &skewed.trial));
     if let Some(skewed) = skewed {
         let Shift { delay_s, skew } = skewed.shift;
@@ -142,7 +158,7 @@ impl<'a> Case<'a> {
     fn corrected(&self, as_it_is: &Trial, with_skew: bool) -> Option<Corrected> {
         let (mut shift, mut rows, mut trial) = (Shift::default(), self.record.rows.to_vec(), as_it_is.clone());
         for _ in 0..ROUNDS {
-            let (step, _) = self.improvement(&rows, &trial, with_skew)?;
+            let Step { shift: step, .. } = self.improvement(&rows, &trial, with_skew)?;
             shift = Shift { delay_s: shift.delay_s + step.delay_s, skew: shift.skew + step.skew };
             rows = self.shifted(shift);
             let model: Model = trial.model();
@@ -155,8 +171,8 @@ impl<'a> Case<'a> {
         Some(Corrected { shift, rows, trial })
     }
 
-    /// Returns the shift that would reduce the residual, and by how much, N².
-    fn improvement(&self, rows: &[Row], trial: &Trial, with_skew: bool) -> Option<(Shift, f64)> {
+    /// Returns the shift that would reduce the residual most.
+    fn improvement(&self, rows: &[Row], trial: &Trial, with_skew: bool) -> Option<Step> {
         let bench = self.bench(rows);
         let rate_n_per_s = rates(&self.record, rows);
         let by_time = |(place, rate)| rate * seconds(&self.record, place);
@@ -175,7 +191,13 @@ impl<'a> Case<'a> {
         let right = DVector::from_fn(columns.len(), |row, _| product(&columns[row], residual_n));
         let found = matrix.cholesky()?.solve(&right);
         let shift = Shift { delay_s: found[0], skew: found.get(1).copied().unwrap_or(0.0) };
-        Some((shift, found.dot(&right)))
+        let gain = found.dot(&right);
+        let of_shift: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        let inflation = inflations(&of_shift, residual_n).into_iter().fold(1.0, f64::max);
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let (count, more) = (bench.count(false) as f64 / inflation, columns.len() as f64);
+        let delta_bic = delta_bic(count, 1.0 - gain / product(residual_n, residual_n), more);
+        Some(Step { shift, gain, delta_bic })
     }
 
     /// Returns the cycles with references interpolated linearly from later samples; NaN past the ends of each log.

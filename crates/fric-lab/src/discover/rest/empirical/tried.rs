@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use fric_core::effects::Effect;
 use fric_core::effects::empirical::{Over, RATIO, SHARES, SIZE};
 use fric_core::parameters::Values;
 use nalgebra::{DMatrix, DVector};
@@ -119,6 +120,11 @@ impl Tried {
             rows = Some(layout.rows(bench, &model, &model.values));
         }
         let rows = rows?;
+        // A table that no robot file may have, such as a change of the friction where there is hardly any, is none.
+        let is_allowed = |of: Parameter| (of.row().min..=of.row().max).contains(&model.values[of.place()]);
+        if !Parameter::of(Effect::Empirical).all(is_allowed) {
+            return None;
+        }
         let learned = rows.normal(|row| !rows.held_out[row]);
         let inverse = inverse_of_normal(&learned.penalised(rows.first_share, self.penalty))?;
         // The covariance follows from the scatter of the blocks' scores.
