@@ -45,7 +45,7 @@ impl Search<'_, '_> {
         let beyond = self.beyond_the_log();
         let mut round = self.round(found);
         round.retain(|(effect, _)| !effect.is_friction() && !beyond.contains_key(effect));
-        for set in self.strong_sets(&model, round, MOST_EFFECTS.saturating_sub(found.len())) {
+        for set in self.strong_sets(&model, &round, MOST_EFFECTS.saturating_sub(found.len())) {
             let mut with = found.clone();
             self.add(&mut with, &set);
             self.settle(&with);
@@ -60,14 +60,14 @@ impl Search<'_, '_> {
 
     /// Returns the sets of at most `room` candidates in which each has strong evidence beside the others, by linear steps from the model: the best first,
     /// in each the strongest first.
-    fn strong_sets(&self, model: &Trial, round: Vec<(Effect, Trial)>, room: usize) -> Vec<Vec<Effect>> {
+    fn strong_sets(&self, model: &Trial, round: &[(Effect, Trial)], room: usize) -> Vec<Vec<Effect>> {
         let problem = self.bench.problem(&model.free, None);
         let mut residual_n = self.bench.residuals_n(&model.values);
         for (residual_n, _) in residual_n.iter_mut().zip(&problem.used).filter(|(_, used)| !**used) {
             *residual_n = f64::NAN;
         }
         let candidates: Vec<Candidate> =
-            round.into_iter().filter_map(|(effect, trial)| self.candidate(model, effect, trial, &residual_n)).collect();
+            round.iter().filter_map(|(effect, trial)| self.candidate(model, *effect, trial, &residual_n)).collect();
         let added_n: Vec<Vec<f64>> = candidates.iter().map(|of| of.added_n.clone()).collect();
         let Some(signals) = less_projection(&problem, &model.values, &added_n) else { return Vec::new() };
         let columns = Columns::new(&signals, 0, &residual_n);
@@ -108,7 +108,7 @@ impl Search<'_, '_> {
     }
 
     /// Returns a candidate with the force that it adds where it fits best, or, if it is best left out alone, at its first start; `None` if it adds nothing.
-    fn candidate(&self, model: &Trial, effect: Effect, trial: Trial, residual_n: &[f64]) -> Option<Candidate> {
+    fn candidate(&self, model: &Trial, effect: Effect, trial: &Trial, residual_n: &[f64]) -> Option<Candidate> {
         let adds = |values: &Values| -> Vec<f64> {
             let with_n = self.bench.residuals_n(values);
             with_n.iter().zip(residual_n).map(|(with, without)| with - without).collect()

@@ -53,14 +53,14 @@ impl Search<'_, '_> {
         let cables = self.bench.records.len();
         let promises = self.promises(found).clone();
         #[expect(clippy::cast_precision_loss, reason = "counts")]
-        let promised = |gain: f64, parameters: usize| {
+        let linear_bic = |gain: f64, parameters: usize| {
             delta_bic(6.0 * self.bench.count(false) as f64, 1.0 - gain / trial.training, parameters as f64)
         };
-        let of_single = promises.single.iter().map(|of| promised(of.gain, of.candidate.count()));
+        let of_single = promises.single.iter().map(|of| linear_bic(of.gain, of.candidate.count()));
         let single = of_single.fold(0.0, f64::min);
         let each_of = |effect: Effect| (0..cables).map(move |cable| Candidate::Own(cable, effect));
         let is_open = |effect: Effect| each_of(effect).all(|candidate| !self.refused.contains_key(&candidate));
-        let cost = |of: &EachPromise| promised(of.gain, cables * Candidate::Alike(of.effect).count());
+        let cost = |of: &EachPromise| linear_bic(of.gain, cables * Candidate::Alike(of.effect).count());
         let best = promises.each.iter().filter(|of| is_open(of.effect) && found.len() + cables <= MOST);
         let best = best.min_by(|one, other| cost(one).total_cmp(&cost(other))).filter(|of| cost(of) < single);
         let Some(EachPromise { effect, model, .. }) = best else { return false };
