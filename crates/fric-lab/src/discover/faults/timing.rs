@@ -2,7 +2,7 @@
 //!
 //! A time error shows in the residual as the rate of the reference: a reference that is late by ε leaves `ε·dF/dt`. Delay and skew are improved
 //! iteratively from this part of the residual, after removing what the model's parameters can compensate. They are kept if the evidence is strong,
-//! weakened by the memory of what a first step leaves, and the model then agrees better on held-out samples. A gain that is wrong, for example, makes
+//! weakened by the memory of what they leave, and the model then agrees better on held-out samples. A gain that is wrong, for example, makes
 //! much of a ramp of the load look late, but leaves a rest that lasts; once the gain has its name, nothing is late. An early reference is no such fault:
 //! it indicates a sensor that lags, which concerns the machine.
 
@@ -50,10 +50,11 @@ struct Shift {
 /// A linear step towards the correct time.
 struct Step {
     shift: Shift,
-    /// Decrease of the sum of squares, N².
+    /// Decrease of the sum of squares, N², and as a fraction of what the model's parameters cannot compensate.
     gain: f64,
-    /// BIC with the step minus that without, weakened by the memory of what it leaves.
-    delta_bic: f64,
+    gain_ratio: f64,
+    /// Factor by which memory in what the step leaves weakens the evidence, at least 1.
+    inflation: f64,
 }
 
 /// The result of correcting one kind of shift.
@@ -74,25 +75,36 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>,
     let (blocks, measured) = (split(record), measured(record));
     let case = Case { record: *record, counts: &counts, blocks: &blocks, measured: &measured, stop };
     let as_it_is = case.bench(record.rows).try_one(&start);
-    let is_strong = |step: &Step, of: &Trial| step.gain >= LEAST_GAIN * of.training && step.delta_bic < -STRONG_BIC;
-    if !is_strong(&case.improvement(record.rows, &as_it_is, true)?, &as_it_is) {
+    let first = case.improvement(record.rows, &as_it_is, true)?;
+    if first.gain < LEAST_GAIN * as_it_is.training {
         return None;
     }
+    // The evidence is that of the first steps. A value interpolated between two samples has less noise than either, so that any shift by a fraction of
+    // an interval makes the sum of squares smaller. The memory is that of what the whole shift leaves.
+    let is_strong = |first: &Step, left: &Step, parameters: f64| {
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let count = case.bench(record.rows).count(false) as f64 / left.inflation;
+        delta_bic(count, 1.0 - first.gain_ratio, parameters) < -STRONG_BIC
+    };
     let late = case.corrected(&as_it_is, false)?;
-    // A value interpolated between two samples has less noise than either. On held-out samples a shift by a fraction of an interval therefore looks
-    // better than one by whole intervals, and a skew looks better than none. So the rest after the delay must still be correlated with the rate.
-    let may_be_skewed = is_strong(&case.improvement(&late.rows, &late.trial, true)?, &late.trial);
+    // For the same reason a skew looks better than none, so the rest after the delay must still be correlated with the rate.
+    let more = case.improvement(&late.rows, &late.trial, true)?;
+    let may_be_skewed = more.gain >= LEAST_GAIN * late.trial.training;
     let skewed = if may_be_skewed { Some(case.corrected(&as_it_is, true)?) } else { None };
     let gains = |from: &Trial, to: &Trial| to.held_out < (1.0 - LEAST_GAIN) * from.held_out;
     let fault = |fault, parameters| RecordingFault { fault, parameters, intervals_s: Vec::new() };
     let skewed = skewed.filter(|skewed| skewed.shift.skew.abs() <= MOST_SKEW);
     let skewed = skewed.filter(|skewed| gains(&late.trial, &skewed.trial) && gains(&as_it_is, &skewed.trial));
-    if let Some(skewed) = skewed {
+    if let Some(skewed) = skewed
+        && is_strong(&first, &case.improvement(&skewed.rows, &skewed.trial, true)?, 2.0)
+    {
         let Shift { delay_s, skew } = skewed.shift;
         return Some((skewed.rows, fault(Fault::ClockSkew, vec![("skew_ratio", -skew), ("delay_s", delay_s)])));
     }
     let delay_s = late.shift.delay_s;
-    let is_late = delay_s > 0.0 && gains(&as_it_is, &late.trial);
+    let [first, left] =
+        [(record.rows, &as_it_is), (&late.rows, &late.trial)].map(|(rows, trial)| case.improvement(rows, trial, false));
+    let is_late = delay_s > 0.0 && gains(&as_it_is, &late.trial) && is_strong(&first?, &left?, 1.0);
     is_late.then(|| (late.rows, fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)])))
 }
 
@@ -194,10 +206,7 @@ impl<'a> Case<'a> {
         let gain = found.dot(&right);
         let of_shift: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
         let inflation = inflations(&of_shift, residual_n).into_iter().fold(1.0, f64::max);
-        #[expect(clippy::cast_precision_loss, reason = "counts")]
-        let (count, more) = (bench.count(false) as f64 / inflation, columns.len() as f64);
-        let delta_bic = delta_bic(count, 1.0 - gain / product(residual_n, residual_n), more);
-        Some(Step { shift, gain, delta_bic })
+        Some(Step { shift, gain, gain_ratio: gain / product(residual_n, residual_n), inflation })
     }
 
     /// Returns the cycles with references interpolated linearly from later samples; NaN past the ends of each log.
