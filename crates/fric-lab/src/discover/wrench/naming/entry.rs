@@ -6,11 +6,9 @@ use super::fits::scales_all;
 use super::standing::standings;
 use super::{MOST, NEAR_ERRORS, Search, set_of};
 use crate::candidates::catalogue::{fitted, has};
-use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::{LEAST_GAIN, LEAST_SIZE, NEGLIGIBLE, Refusal, STRONG_BIC};
-use crate::discover::wrench::bench::{Model, Trial};
+use crate::discover::wrench::bench::Trial;
 use crate::discover::wrench::candidate::Candidate;
-use crate::discover::wrench::screen::EachPromise;
 use crate::fit::Parameter;
 
 /// Minimum number of cables with the same effect that may become one effect of all cables.
@@ -23,9 +21,6 @@ impl Search<'_, '_> {
             let trial = self.fit(found);
             if self.excess(&trial) <= NEGLIGIBLE {
                 break;
-            }
-            if self.enter_on_each(found) {
-                continue;
             }
             let enough = self.least_gain(&trial);
             let mut entrants = self.beside(found);
@@ -44,27 +39,6 @@ impl Search<'_, '_> {
             found.push(*candidate);
             self.spread(found, *candidate);
         }
-    }
-
-    /// Adds an effect with own parameters on each cable, if that promises more evidence than any single candidate and keeps the promise. Returns whether
-    /// it did.
-    fn enter_on_each(&mut self, found: &mut Vec<Candidate>) -> bool {
-        let trial = self.fit(found);
-        let cables = self.bench.records.len();
-        let promises = self.promises(found).clone();
-        #[expect(clippy::cast_precision_loss, reason = "counts")]
-        let linear_bic = |gain: f64, parameters: usize| {
-            delta_bic(6.0 * self.bench.count(false) as f64, 1.0 - gain / trial.training, parameters as f64)
-        };
-        let of_single = promises.single.iter().map(|of| linear_bic(of.gain, of.candidate.count()));
-        let single = of_single.fold(0.0, f64::min);
-        let each_of = |effect: Effect| (0..cables).map(move |cable| Candidate::Own(cable, effect));
-        let is_open = |effect: Effect| each_of(effect).all(|candidate| !self.refused.contains_key(&candidate));
-        let cost = |of: &EachPromise| linear_bic(of.gain, cables * Candidate::Alike(of.effect).count());
-        let best = promises.each.iter().filter(|of| is_open(of.effect) && found.len() + cables <= MOST);
-        let best = best.min_by(|one, other| cost(one).total_cmp(&cost(other))).filter(|of| cost(of) < single);
-        let Some(EachPromise { effect, model, .. }) = best else { return false };
-        self.enters_apart(found, found.clone(), model, each_of(*effect).collect(), cables * fitted(*effect).len())
     }
 
     /// Returns the decrease of the held-out squares that a candidate needs to enter.
@@ -119,8 +93,7 @@ impl Search<'_, '_> {
         for cable in 0..count {
             if !has(effect, &model.values[cable]) {
                 let of_cable = Candidate::Own(cable, effect);
-                let promise =
-                    self.promises(&others).single.iter().find(|promise| promise.candidate == of_cable).cloned();
+                let promise = self.promises(&others).iter().find(|promise| promise.candidate == of_cable).cloned();
                 let Some(promise) = promise else { return };
                 for place in Parameter::of(effect).map(|of| of.place()) {
                     model.values[cable][place] = promise.model.values[cable][place];
@@ -133,31 +106,17 @@ impl Search<'_, '_> {
         if more == 0 {
             return;
         }
+        let apart = self.bench.fit(&model, NEAR_ERRORS);
         let each: Vec<Candidate> = (0..count).map(|cable| Candidate::Own(cable, effect)).collect();
-        if self.enters_apart(found, others, &model, each, more) && is_alike {
-            self.refused.insert(candidate, Refusal::Unsteady("cable"));
-        }
-    }
-
-    /// Puts effects of each cable in the place of others if the evidence for their `more` parameters is strong. Returns whether it is.
-    fn enters_apart(
-        &mut self,
-        found: &mut Vec<Candidate>,
-        others: Vec<Candidate>,
-        model: &Model,
-        each: Vec<Candidate>,
-        more: usize,
-    ) -> bool {
-        let trial = self.fit(found);
-        let apart = self.bench.fit(model, NEAR_ERRORS);
         let standings = standings(self.bench, &apart, &each);
         let inflation = standings.iter().map(|standing| standing.inflation).fold(1.0, f64::max);
-        let enters = apart.held_out < trial.held_out && self.delta_bic(&trial, &apart, more, inflation) < -STRONG_BIC;
-        if enters {
+        if apart.held_out < trial.held_out && self.delta_bic(&trial, &apart, more, inflation) < -STRONG_BIC {
             *found = others;
             found.extend(each);
             self.fits.insert(set_of(found), apart);
+            if is_alike {
+                self.refused.insert(candidate, Refusal::Unsteady("cable"));
+            }
         }
-        enters
     }
 }
