@@ -1,4 +1,4 @@
-//! Bound on the work of a discovery on one cable.
+//! Bound on the work of a pass over one cable.
 //!
 //! Where the truth is in the catalogue, a search ends by itself: the names leave only noise. Where it is not, every name leaves a rest that others seem to
 //! reduce; they enter, are exchanged and refused, and each attempt tries all candidates again, with more parameters each time. So the work is counted
@@ -8,14 +8,14 @@ use std::cell::Cell;
 
 use super::workbench::Trial;
 
-/// Number of evaluations after which no candidate enters any more, none is exchanged, and no further pass begins; and the number by which each effect
-/// in the model raises it, since every search beside it is one over all candidates. What is named until then still has to justify itself, and the rest
-/// is described as usual. Logs with one hidden effect take up to 800, with five 2800, a real drive with three names 1700. Half of both numbers cuts
+/// Number of evaluations in a pass after which no candidate enters any more, none is exchanged, and no further pass begins; and the number by which each
+/// effect in the model raises it, since every search beside it is one over all candidates. What is named until then still has to justify itself, and the
+/// rest is described as usual. Logs with one hidden effect take up to 800, with five 2800, a real drive with three names 1700. Half of both numbers cuts
 /// these short; with double, a log with three wrong names takes twice the time.
 const MOST_EVALUATIONS: usize = 1000;
 const MORE_PER_EFFECT: usize = 400;
 
-/// The work done on a cable so far.
+/// The work done so far in a pass over a cable.
 #[derive(Debug, Default)]
 pub struct Effort {
     evaluations: Cell<usize>,

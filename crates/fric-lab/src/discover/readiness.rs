@@ -64,9 +64,9 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
     }
     let [out, back] = motion.strokes;
     if out.min(back) == 0 || out + back < FEWEST_STROKES {
-        let times = if out.min(back) == 0 { "never" } else { "only once" };
+        let reverses = if out.min(back) == 0 { "never reverses" } else { "reverses only once" };
         return Some(Lack::new(
-            format!("it {times} reverses, so that friction cannot be told from an offset of the sensors"),
+            format!("it {reverses}, so that friction cannot be told from an offset of the sensors"),
             RUN,
         ));
     }

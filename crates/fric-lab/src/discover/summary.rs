@@ -1,6 +1,6 @@
 //! The result of a discovery for people: the verdicts of all cables, then the findings on each.
 
-use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WrenchComponent, WrenchGap};
+use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WhereResult, WrenchComponent, WrenchGap};
 use crate::fit::summary::log_table;
 use crate::text::{listed, table, wrapped};
 
@@ -95,8 +95,9 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
     }
     let variation = cable.variation_in_words().filter(|_| cable.verdict != "complete" || cable.is_constant());
     text += &variation.map_or_else(String::new, |variation| line("reference", &variation));
-    for (count, place) in cable.places.iter().filter(|place| place.signal != "frequency").take(MOST_PLACES).enumerate()
-    {
+    // Beside a complete model the gap is what fitting its values has closed.
+    let has_gap = |place: &&WhereResult| cable.verdict != "complete" && place.signal != "frequency";
+    for (count, place) in cable.places.iter().filter(has_gap).take(MOST_PLACES).enumerate() {
         text += &line(if count == 0 { "where" } else { "" }, &place.in_words("the gap"));
     }
     for effect in &cable.effects {

@@ -57,8 +57,8 @@ impl Units {
                 "forces are on average",
                 mean(force),
                 "N",
-                "grams or millinewtons",
-                "0.00980665 or 0.001",
+                "grams (or millinewtons, factor 0.001)",
+                "0.00980665",
             ));
         }
         if force.greatest > 0.0 && force.greatest < SMALL_FORCE_N {

@@ -75,7 +75,7 @@ impl CableLog<'_> {
             held_out_n: held_out_of(values),
         };
         let bench = self.bench(&outcome.counts);
-        let search = Search::new(&bench, noise_n, self.around(base, noise_n), base, self.steady, self.effort);
+        let search = Search::new(&bench, noise_n, self.around(base, noise_n), base, self.steady, &outcome.effort);
         // The last step of the ladder is the extended model as it is written.
         let last = naming.named.len().saturating_sub(1);
         let steps = naming.ladder.iter().skip(1).enumerate();

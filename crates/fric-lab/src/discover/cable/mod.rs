@@ -10,7 +10,6 @@ use fric_core::parameters::{MU, Values};
 
 use self::given::{given_model, has_reference};
 use crate::candidates::catalogue::around;
-use crate::discover::effort::Effort;
 use crate::discover::faults::oscillations::Oscillations;
 use crate::discover::faults::spectrum::{Times, motion_and_load};
 use crate::discover::faults::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
@@ -71,7 +70,6 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
     // Samples between two measurements count too, because a line may be faster than the measurements.
     let throughout = rest::with_interpolated(&counts, &measured, |place| has_reference(record, place));
-    let effort = Effort::default();
     let left_by = |values: &Values| Workbench { counts: &throughout, ..bench.clone() }.residuals_n(values);
     let raw = CableLog {
         record: *record,
@@ -82,7 +80,6 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
         measured: &measured,
         conditions: &conditions,
         steady: &steady,
-        effort: &effort,
         stop,
     };
     let search = |heard: &Oscillations, start: &mut workbench::Model| {
@@ -100,7 +97,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     let after = Oscillations::of(&left_by(&outcome.fitted.values), &times, record, &signals);
     let mut faults = after.faults();
     if !heard.are_like(&after)
-        && !effort.is_spent(outcome.naming.named.len())
+        && !outcome.is_cut_short()
         && let Some(again) = search(&after, &mut start)
     {
         // No filter removes the onset of a vibration. An effect that is named only after the removal stands for that remainder.
@@ -149,7 +146,6 @@ struct CableLog<'a> {
     conditions: &'a [Condition],
     /// The conditions over which an effect has one size.
     steady: &'a [Condition],
-    effort: &'a Effort,
     stop: &'a AtomicBool,
 }
 

@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 
 use super::given::acts;
 use super::{BELIEVED_RATIO, CableLog};
+use crate::discover::effort::Effort;
 use crate::discover::naming::{Naming, Search};
 use crate::discover::rest::places::Place;
 use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
@@ -22,6 +23,8 @@ const MOST_PASSES: usize = 3;
 pub(super) struct Outcome {
     /// The samples that the pass used.
     pub(super) counts: Vec<bool>,
+    /// The work that it took.
+    pub(super) effort: Effort,
     pub(super) base: Trial,
     pub(super) naming: Naming,
     /// The model with everything that was found, fitted to all samples as an identification does.
@@ -29,6 +32,13 @@ pub(super) struct Outcome {
     pub(super) rest: Rest,
     /// A stretch of cable with a local defect, left out of the assessment of the rest.
     pub(super) stretch: Option<Place>,
+}
+
+impl Outcome {
+    /// Whether the search had to come to an end, so that no further pass begins.
+    pub(super) fn is_cut_short(&self) -> bool {
+        self.effort.is_spent(self.naming.named.len())
+    }
 }
 
 /// A model fitted to all samples.
@@ -55,13 +65,11 @@ impl CableLog<'_> {
     pub(super) fn passes(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {
         let mut outcome = self.pass(self.counts, start)?;
         let told = self.newly_determined(self.counts, &outcome.naming, held);
-        if !self.effort.is_spent(outcome.naming.named.len())
-            && told.iter().any(|parameter| !start.free.contains(parameter))
-        {
+        if !outcome.is_cut_short() && told.iter().any(|parameter| !start.free.contains(parameter)) {
             start.free.extend(told);
             outcome = self.pass(self.counts, start).unwrap_or(outcome);
         }
-        if !self.effort.is_spent(outcome.naming.named.len())
+        if !outcome.is_cut_short()
             && let Some(found) = outcome.rest.stretch.take()
         {
             let outside: Vec<bool> =
@@ -81,11 +89,12 @@ impl CableLog<'_> {
         let bench = self.bench(counts);
         let base = bench.try_one(start);
         let noise_n = self.noise_n(&bench, &base)?;
-        let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.steady, self.effort);
+        let effort = Effort::default();
+        let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.steady, &effort);
         let mut naming = search.run(&[]);
         let mut fitted = self.fitted(counts, &naming.model, noise_n);
         for _ in 1..MOST_PASSES {
-            if self.effort.is_spent(naming.named.len()) {
+            if effort.is_spent(naming.named.len()) {
                 break;
             }
             let beyond = self.beyond(&bench, &search, &fitted, &naming.effects())?;
@@ -100,7 +109,7 @@ impl CableLog<'_> {
         }
         let residual_n = bench.residuals_n(&fitted.values);
         let rest = self.rest(&bench, residual_n, self.least_n(&base))?;
-        Some(Outcome { counts: counts.to_vec(), base, naming, fitted, rest, stretch: None })
+        Some(Outcome { counts: counts.to_vec(), effort, base, naming, fitted, rest, stretch: None })
     }
 
     /// Names what would be missing if the model with the effects that `search` has found were the given one.

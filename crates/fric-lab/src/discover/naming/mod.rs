@@ -27,6 +27,7 @@ use fric_core::effects::empirical::SHARES;
 use fric_core::parameters::Values;
 
 use self::evidence::{delta_bic, inflation};
+use self::fits::gains;
 use self::justification::is_at_end;
 use super::effort::Effort;
 use super::workbench::{Trial, Workbench};
@@ -75,6 +76,10 @@ pub struct Named {
 pub enum Refusal {
     /// The evidence is weaker than what chance produces.
     Weak,
+    /// The effect removes so little of what is left that the model error of another effect can look like it.
+    Small,
+    /// The search ended before it could judge the effect.
+    Unjudged,
     /// A parameter is stuck at the bound of its range.
     AtBound,
     /// The log cannot distinguish the effect from the parameter of this name.
@@ -355,17 +360,23 @@ impl<'b, 'a> Search<'b, 'a> {
         if self.excess(&model) <= NEGLIGIBLE {
             return Vec::new();
         }
+        let (enough, cycle_s) = (self.least_gain(&model), self.bench.record.cycle_s);
         let mut tried: Vec<Tried> = self
             .round(found)
             .into_iter()
             .filter(|(_, trial)| trial.held_out < model.held_out && trial.training < model.training)
             .map(|(effect, trial)| {
                 let inflation = inflation(self.bench, &trial, &fitted(effect));
-                let cycle_s = self.bench.record.cycle_s;
                 let refusal = if is_at_end(effect, &trial.values, cycle_s) {
                     Refusal::AtBound
+                } else if let Some(refusal) = self.refused.get(&effect) {
+                    *refusal
+                } else if self.delta_bic(&model, &trial, inflation) >= -STRONG_BIC {
+                    Refusal::Weak
+                } else if !gains(&model, &trial, enough) {
+                    Refusal::Small
                 } else {
-                    self.refused.get(&effect).copied().unwrap_or(Refusal::Weak)
+                    Refusal::Unjudged
                 };
                 Tried { effect, trial, inflation, refusal }
             })

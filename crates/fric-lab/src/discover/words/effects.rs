@@ -104,6 +104,10 @@ impl Refusal {
     pub fn in_words(self) -> String {
         match self {
             Self::Weak => "the evidence is weaker than what chance may give".to_owned(),
+            Self::Small => {
+                "it removes so little of what is left that another effect's error may look like it".to_owned()
+            }
+            Self::Unjudged => "the search ended before it was judged".to_owned(),
             Self::AtBound => "its parameter runs to the end of its range".to_owned(),
             Self::Open(other) => format!("the log cannot tell it from {}", name_of(other)),
             Self::Unsteady(signal) => {

@@ -56,12 +56,17 @@ impl FaultResult {
                  amplifier into account",
                 quantity(value("delay_s"), None, "s")
             ),
-            Fault::ClockSkew => format!(
-                "the reference gets ahead by {} s each second, and comes late by {} s at the beginning: its clock is another one; it was put \
-                 where it belongs; record both with one clock, or synchronise them",
-                significant(value("skew_ratio")),
-                significant(value("delay_s"))
-            ),
+            Fault::ClockSkew => {
+                let (skew_ratio, delay_s) = (value("skew_ratio"), value("delay_s"));
+                format!(
+                    "the reference {} by {} ppm, so its clock is another one, and at the beginning it is {} by {}; it was put where it belongs; \
+                     record both with one clock, or synchronise them",
+                    if skew_ratio < 0.0 { "falls behind" } else { "gets ahead" },
+                    significant(1e6 * skew_ratio.abs()),
+                    if delay_s < 0.0 { "early" } else { "late" },
+                    quantity(delay_s.abs(), None, "s")
+                )
+            }
         }
     }
 }

@@ -4,14 +4,16 @@ use fric_core::effects::Effect;
 
 use super::fits::scales_all;
 use super::standing::standings;
-use super::{MOST, NEAR_ERRORS, Search, set_of};
+use super::{LEAST_AWAY, MOST, NEAR_ERRORS, Search, set_of};
 use crate::candidates::catalogue::{fitted, has};
+use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::{LEAST_GAIN, LEAST_SIZE, NEGLIGIBLE, Refusal, STRONG_BIC};
-use crate::discover::wrench::bench::Trial;
+use crate::discover::wrench::bench::{Model, Trial};
 use crate::discover::wrench::candidate::Candidate;
+use crate::discover::wrench::screen::Promises;
 use crate::fit::Parameter;
 
-/// Minimum number of cables with the same effect that may become one effect of all cables.
+/// Minimum number of cables with the same effect that may become one effect of all cables, or that let the sensors of all be doubted.
 const LEAST_ALIKE: usize = 3;
 
 impl Search<'_, '_> {
@@ -21,6 +23,9 @@ impl Search<'_, '_> {
             let trial = self.fit(found);
             if self.excess(&trial) <= NEGLIGIBLE {
                 break;
+            }
+            if self.enter_gains(found) {
+                continue;
             }
             let enough = self.least_gain(&trial);
             let mut entrants = self.beside(found);
@@ -39,6 +44,32 @@ impl Search<'_, '_> {
             found.push(*candidate);
             self.spread(found, *candidate);
         }
+    }
+
+    /// Adds a gain of its own for each force sensor, if these together promise more evidence than any single candidate and at least [`LEAST_ALIKE`] sensors
+    /// need theirs. Returns whether it did.
+    fn enter_gains(&mut self, found: &mut Vec<Candidate>) -> bool {
+        let each: Vec<Candidate> =
+            (0..self.bench.records.len()).map(|cable| Candidate::Own(cable, Effect::SensorGain)).collect();
+        let is_gain = |of: &Candidate| of.effect() == Some(Effect::SensorGain);
+        let is_open = each.iter().all(|of| !self.refused.contains_key(of)) && !found.iter().any(is_gain);
+        if !is_open || found.len() + each.len() > MOST {
+            return false;
+        }
+        let trial = self.fit(found);
+        #[expect(clippy::cast_precision_loss, reason = "counts")]
+        let linear_bic = |gain: f64, parameters: usize| {
+            delta_bic(6.0 * self.bench.count(false) as f64, 1.0 - gain / trial.training, parameters as f64)
+        };
+        let Promises { of_candidates, of_gains } = self.promises(found);
+        let of_candidates = of_candidates.iter().map(|of| linear_bic(of.gain, of.candidate.count()));
+        if linear_bic(*of_gains, each.len()) >= of_candidates.fold(0.0, f64::min) {
+            return false;
+        }
+        let mut model = trial.model.clone();
+        model.free.iter_mut().for_each(|free| free.extend(fitted(Effect::SensorGain)));
+        let count = each.len();
+        self.enters_apart(found, found.clone(), &model, each, count, LEAST_ALIKE)
     }
 
     /// Returns the decrease of the held-out squares that a candidate needs to enter.
@@ -93,7 +124,8 @@ impl Search<'_, '_> {
         for cable in 0..count {
             if !has(effect, &model.values[cable]) {
                 let of_cable = Candidate::Own(cable, effect);
-                let promise = self.promises(&others).iter().find(|promise| promise.candidate == of_cable).cloned();
+                let promise =
+                    self.promises(&others).of_candidates.iter().find(|promise| promise.candidate == of_cable).cloned();
                 let Some(promise) = promise else { return };
                 for place in Parameter::of(effect).map(|of| of.place()) {
                     model.values[cable][place] = promise.model.values[cable][place];
@@ -106,17 +138,35 @@ impl Search<'_, '_> {
         if more == 0 {
             return;
         }
-        let apart = self.bench.fit(&model, NEAR_ERRORS);
         let each: Vec<Candidate> = (0..count).map(|cable| Candidate::Own(cable, effect)).collect();
+        if self.enters_apart(found, others, &model, each, more, 0) && is_alike {
+            self.refused.insert(candidate, Refusal::Unsteady("cable"));
+        }
+    }
+
+    /// Puts effects of each cable in the place of others if the evidence for their `more` parameters is strong, and at least `needed` of the effects are
+    /// significant. Returns whether it did.
+    fn enters_apart(
+        &mut self,
+        found: &mut Vec<Candidate>,
+        others: Vec<Candidate>,
+        model: &Model,
+        each: Vec<Candidate>,
+        more: usize,
+        needed: usize,
+    ) -> bool {
+        let trial = self.fit(found);
+        let apart = self.bench.fit(model, NEAR_ERRORS);
         let standings = standings(self.bench, &apart, &each);
         let inflation = standings.iter().map(|standing| standing.inflation).fold(1.0, f64::max);
-        if apart.held_out < trial.held_out && self.delta_bic(&trial, &apart, more, inflation) < -STRONG_BIC {
+        let enters = apart.held_out < trial.held_out
+            && self.delta_bic(&trial, &apart, more, inflation) < -STRONG_BIC
+            && standings.iter().filter(|standing| standing.away >= LEAST_AWAY).count() >= needed;
+        if enters {
             *found = others;
             found.extend(each);
             self.fits.insert(set_of(found), apart);
-            if is_alike {
-                self.refused.insert(candidate, Refusal::Unsteady("cable"));
-            }
         }
+        enters
     }
 }

@@ -13,7 +13,7 @@ use crate::discover::naming::justification::is_at_end;
 use crate::discover::wrench::bench::{Bench, Model, Trial};
 use crate::discover::wrench::candidate::Candidate;
 use crate::discover::wrench::geometry::Geometry;
-use crate::discover::wrench::screen::{Promise, promises};
+use crate::discover::wrench::screen::{Promise, Promises, promises};
 use crate::effects::{self, Around};
 use crate::fit::Parameter;
 use crate::replay::WrenchReference;
@@ -52,7 +52,7 @@ impl Search<'_, '_> {
 
     /// Returns the models with one more of the most promising candidates, without those that were set aside.
     pub(super) fn beside(&mut self, found: &[Candidate]) -> Vec<(Candidate, Trial)> {
-        let all: Vec<Candidate> = self.promises(found).iter().map(|promise| promise.candidate).collect();
+        let all: Vec<Candidate> = self.promises(found).of_candidates.iter().map(|promise| promise.candidate).collect();
         let open = all.into_iter().filter(|candidate| !self.refused.contains_key(candidate));
         let most_promising: Vec<Candidate> = open.take(FITTED).collect();
         self.each_beside(found, &most_promising)
@@ -64,7 +64,8 @@ impl Search<'_, '_> {
         let unknown: Vec<Candidate> =
             candidates.iter().copied().filter(|candidate| !self.fits.contains_key(&with(candidate))).collect();
         if !unknown.is_empty() {
-            let promises = self.promises(found).iter().filter(|promise| unknown.contains(&promise.candidate));
+            let promises =
+                self.promises(found).of_candidates.iter().filter(|promise| unknown.contains(&promise.candidate));
             let new: Vec<Promise> = promises.cloned().collect();
             let fit = |promise: &Promise| {
                 let mut trial = self.bench.fit(&promise.model, NEAR_ERRORS);
@@ -93,8 +94,8 @@ impl Search<'_, '_> {
         self.bench.fit(&model, NEAR_ERRORS)
     }
 
-    /// Returns what every candidate promises beside a model, the best first; without those that promise nothing.
-    pub(super) fn promises(&mut self, found: &[Candidate]) -> &[Promise] {
+    /// Returns what candidates promise beside a model, the best first; without those that promise nothing.
+    pub(super) fn promises(&mut self, found: &[Candidate]) -> &Promises {
         let set = set_of(found);
         if !self.promised.contains_key(&set) {
             let trial = self.fit(found);
@@ -107,10 +108,10 @@ impl Search<'_, '_> {
                     && !scales_all(self.bench, model, candidate)
             };
             let mut all = promises(self.bench, model, &around, is_wanted);
-            all.retain(|promise| promise.gain > 0.0);
+            all.of_candidates.retain(|promise| promise.gain > 0.0);
             self.promised.insert(set.clone(), all);
         }
-        self.promised.get(&set).map(Vec::as_slice).unwrap_or_default()
+        self.promised.entry(set).or_default()
     }
 
     /// Returns the surroundings of each cable from which a search starts, with periods of ripples only if wanted, because their scan takes long.

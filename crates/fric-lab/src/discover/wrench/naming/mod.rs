@@ -3,7 +3,9 @@
 //! The search works in rounds:
 //!
 //! 1. *Enter.* Candidates enter one after the other, each time the one with the most evidence on the training samples that also helps on the held-out
-//!    samples. Several cables with the same effect become one effect with the same parameters if that explains as much, and the other way round.
+//!    samples. If a linear step with a gain of its own for each force sensor promises more evidence than any single candidate, the gains enter all at
+//!    once: where every sensor is wrong, the friction has made up for that, and no sensor alone explains much. Several cables with the same effect
+//!    become one effect with the same parameters if that explains as much, and the other way round.
 //! 2. *Leave.* A name stays if the evidence for it is strong, also outside the block in which it helps most; it is large enough to matter; it exceeds
 //!    what robots without it show; and its parameters keep clear of their bounds. The least significant name that cannot stay is set aside, and does not
 //!    return in this search.
@@ -23,7 +25,7 @@ use self::standing::standings;
 use super::bench::{Bench, Model, Trial};
 use super::candidate::Candidate;
 use super::geometry::Geometry;
-use super::screen::Promise;
+use super::screen::Promises;
 use crate::discover::naming::Refusal;
 
 /// Maximum number of names.
@@ -95,8 +97,8 @@ pub struct Search<'b, 'a> {
     noise_square: f64,
     /// Fitted models by the candidates in them, in order.
     fits: BTreeMap<Vec<Candidate>, Trial>,
-    /// The further candidates beside such a model, the most promising first.
-    promised: BTreeMap<Vec<Candidate>, Vec<Promise>>,
+    /// What further candidates promise beside such a model.
+    promised: BTreeMap<Vec<Candidate>, Promises>,
     /// Candidates that were set aside and the reasons.
     refused: BTreeMap<Candidate, Refusal>,
 }
