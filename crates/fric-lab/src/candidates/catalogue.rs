@@ -11,7 +11,7 @@ use crate::certainty::assumed::is_assumed;
 use crate::effects;
 use crate::effects::{Around, Periods};
 use crate::replay::Deviation;
-use crate::samples::record::{CableRecord, PLAY_OF_NOISE};
+use crate::samples::cable::{CableRecord, PLAY_OF_NOISE};
 use crate::search::vector::Parameter;
 
 /// Start value of μ for a frictionless model.

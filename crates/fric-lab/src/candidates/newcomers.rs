@@ -103,11 +103,11 @@ fn entrants(
 
 /// Returns the model's residual for a cable's reference. In a fit to the wrench it is the white noise of the cable's own force, without a reference.
 fn residual_n(problem: &Problem<'_>, member: &Member<'_>, forces: &Forces, zero_shifts_n: Option<&[f64]>) -> Vec<f64> {
-    let rows = member.record.rows.iter().enumerate();
+    let references_n = member.record.references_n.iter().enumerate();
     let shift_n = |cycle: usize| zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied().unwrap_or(0.0);
     match problem.comparison {
         Comparison::Forces => {
-            rows.map(|(cycle, effect)| forces.at(cycle).0 - effect.reference_n + shift_n(cycle)).collect()
+            references_n.map(|(cycle, reference_n)| forces.at(cycle).0 - reference_n + shift_n(cycle)).collect()
         }
         Comparison::Wrench { .. } => Vec::new(),
     }

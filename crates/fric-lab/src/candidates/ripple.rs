@@ -9,7 +9,8 @@ use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
 use crate::effects::Periods;
-use crate::samples::record::{CableRecord, Row};
+use crate::samples::cable::CableRecord;
+use crate::samples::record::Row;
 use crate::search::vector::Parameter;
 
 /// Number of the strongest periods that are used.

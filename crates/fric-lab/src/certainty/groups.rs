@@ -1,7 +1,8 @@
 //! Groups samples by operating conditions, to show how an estimate depends on the conditions that a log contains.
 
-use crate::samples::conditions::{Spacing, conditions, sign, time};
-use crate::samples::record::CableRecord;
+use crate::samples::cable::CableRecord;
+use crate::samples::conditions::{Condition, Spacing, conditions, sign, time};
+use crate::samples::record::Row;
 
 /// Number of samples that suffices to place the bin edges of a condition.
 const ENOUGH: usize = 4096;
@@ -27,28 +28,25 @@ impl Groups {
     /// Returns the groups of a cable's samples.
     pub fn of(record: &CableRecord<'_>) -> Self {
         // Conditions that contain the sensor's noise would group the samples by their own residual.
-        let has_noise = |condition: &crate::samples::conditions::Condition| {
-            ["sensor_force", "force_rate"].contains(&condition.signal)
-        };
+        let has_noise = |condition: &Condition<'_>| ["sensor_force", "force_rate"].contains(&condition.signal);
         let mut all = conditions(record);
         all.retain(|condition| !has_noise(condition));
         all.push(time(record));
-        let grouping = |condition: crate::samples::conditions::Condition| {
+        let grouping = |condition: Condition<'_>| {
             let (Spacing::Crowds(bins) | Spacing::Widths(bins)) = condition.bins;
-            let stride = condition.values.len() / ENOUGH + 1;
-            let mut few: Vec<f64> =
-                condition.values.iter().step_by(stride).copied().filter(|value| value.is_finite()).collect();
+            let stride = record.rows.len() / ENOUGH + 1;
+            let mut few: Vec<f64> = condition.values().step_by(stride).filter(|value| value.is_finite()).collect();
             few.sort_by(f64::total_cmp);
             let edge = |bin: usize| few.get(bin * few.len() / bins).copied();
             let mut edges: Vec<f64> = (1..bins).filter_map(edge).collect();
             edges.dedup_by(|one, other| one.to_bits() == other.to_bits());
-            let group = |(value, row): (&f64, &crate::samples::record::Row)| {
-                let bin = edges.partition_point(|edge| edge <= value);
+            let group = |(value, row): (f64, &Row)| {
+                let bin = edges.partition_point(|edge| *edge <= value);
                 let direction = sign(row.signals.displacement_m);
                 let direction = if direction > 0.0 { 2 } else { usize::from(direction < 0.0) };
                 if value.is_finite() { u16::try_from(3 * bin + direction).unwrap_or(NONE) } else { NONE }
             };
-            let groups = condition.values.iter().zip(record.rows).map(group).collect();
+            let groups = condition.values().zip(record.rows).map(group).collect();
             Grouping { groups, count: 3 * (edges.len() + 1) }
         };
         Self { groupings: all.into_iter().map(grouping).collect() }

@@ -18,6 +18,7 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::undetermined::inverse_of_normal;
+use crate::samples::cable::{AddedNoise, CableRecord};
 use crate::samples::noise::white_noise;
 use crate::samples::record::Row;
 use crate::search::problem::{Member, Problem};
@@ -62,19 +63,9 @@ fn noise_n(member: &Member<'_>) -> Vec<f64> {
 
 /// Returns the step of least squares from the estimates if the sensor forces have so many times this noise in addition.
 fn step(problem: &Problem<'_>, values: &[Values], noises: &[Vec<f64>], strength: f64) -> Option<DVector<f64>> {
-    let with_noise = |(member, noise): (&Member<'_>, &Vec<f64>)| {
-        let mut rows = member.record.rows.to_vec();
-        rows.iter_mut().zip(noise).for_each(|(row, noise_n)| row.signals.sensor_force_n += strength * noise_n);
-        rows
-    };
-    let rows: Vec<Vec<Row>> = problem.members.iter().zip(noises).map(with_noise).collect();
+    let members = problem.members.iter().zip(noises);
     let noisy = Problem {
-        members: problem
-            .members
-            .iter()
-            .zip(&rows)
-            .map(|(member, rows)| Member { record: member.record.with_signals(rows), free: member.free.clone() })
-            .collect(),
+        members: members.map(|(member, noise_n)| with_noise(member, AddedNoise { noise_n, strength })).collect(),
         comparison: problem.comparison.clone(),
         loss: problem.loss,
         used: problem.used.clone(),
@@ -83,6 +74,10 @@ fn step(problem: &Problem<'_>, values: &[Values], noises: &[Vec<f64>], strength:
     };
     let (matrix, sums, _) = noisy.gram(values)?.normal_equations();
     Some(-(inverse_of_normal(&matrix)? * sums))
+}
+
+fn with_noise<'a>(member: &Member<'a>, noise: AddedNoise<'a>) -> Member<'a> {
+    Member { record: CableRecord { added_noise: Some(noise), ..member.record }, free: member.free.clone() }
 }
 
 #[cfg(test)]

@@ -44,7 +44,6 @@ use self::faults::length_noise::{self, LengthNoise};
 use self::rest::neighbours::neighbours_of;
 
 use crate::fit::{CableRecord, FitError, Progress, Reference, SampleStore, Stages, StoreError};
-use crate::samples::record::Row;
 
 pub use extended::extended;
 pub use faults::correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
@@ -92,16 +91,10 @@ struct AllCables<'a> {
 }
 
 impl AllCables<'_> {
-    /// Runs work on some cables, given their records before and after removing the noise of their lengths.
-    fn with<T>(
-        &self,
-        cables: Range<usize>,
-        work: impl FnOnce(&[CableRecord<'_>], &[CableRecord<'_>]) -> T,
-    ) -> Result<T, StoreError> {
-        let measurements = self.samples.load(cables.clone())?;
-        let given: Vec<CableRecord<'_>> = cables.filter_map(|cable| measurements.cable(cable)).collect();
-        let rows: Option<Vec<Vec<Row>>> = self.noise.as_ref().map(|noise| noise.steadied(&given));
-        Ok(work(&given, &length_noise::records(&given, self.noise.as_ref().zip(rows.as_deref()))))
+    /// Runs work on the records of some cables without the noise of their lengths.
+    fn with<T>(&self, cables: Range<usize>, work: impl FnOnce(&[CableRecord<'_>]) -> T) -> Result<T, StoreError> {
+        let measurements = length_noise::steadied(self.samples.load(cables.clone())?, self.noise.as_ref());
+        Ok(work(&cables.filter_map(|cable| measurements.cable(cable)).collect::<Vec<_>>()))
     }
 }
 
@@ -112,10 +105,11 @@ fn discover_retimed(
     task: &Task<'_>,
 ) -> Result<(CableDiscovery, Option<RecordingFault>), StoreError> {
     let stop = task.progress.stop_flag();
-    let Some((rows, fault)) = faults::timing::retimed(record, stop) else {
+    let Some((references_n, fault)) = faults::timing::retimed(record, stop) else {
         return Ok((cable::discover_cable(record, task)?, None));
     };
-    let found = cable::discover_cable(&record.with_signals(&rows), task)?;
+    let found = cable::discover_cable(&record.with_references(&references_n), task)?;
+    drop(references_n);
     let named = found.findings.iter().any(|finding| finding.effect != Effect::Empirical);
     // A table may represent the late reference itself.
     let values = rest::empirical::without_table(&found.after.values);
@@ -123,7 +117,9 @@ fn discover_retimed(
     let Some(params) = extended else { return Ok((found, Some(fault))) };
     // A missing effect in the given model may have looked like a late reference.
     Ok(match faults::timing::retimed(&record.with_params(&params), stop) {
-        Some((rows, fault)) => (cable::discover_cable(&record.with_signals(&rows), task)?, Some(fault)),
+        Some((references_n, fault)) => {
+            (cable::discover_cable(&record.with_references(&references_n), task)?, Some(fault))
+        }
         None => (cable::discover_cable(record, task)?, None),
     })
 }
@@ -207,37 +203,46 @@ pub fn discover(
     let all = AllCables { samples, noise: LengthNoise::of(samples, progress.stop_flag())? };
     let mut cables = Vec::new();
     for group in samples.groups() {
-        let discover = |given: &[CableRecord<'_>], records: &[CableRecord<'_>]| {
-            let of_cables = group.clone().into_par_iter().zip(given).zip(records);
-            let of_cable = |((own, given), record): ((usize, &CableRecord<'_>), &CableRecord<'_>)| {
+        let discover = |records: &[CableRecord<'_>]| {
+            let of_cable = |(own, record): (usize, &CableRecord<'_>)| {
                 let stages = Stages::new(progress, cable::STAGES);
-                discover_one(given, &Task { options: *options, own, record, all: &all, progress, stages })
+                discover_one(&Task { options: *options, own, record, all: &all, progress, stages })
             };
-            of_cables.map(of_cable).collect::<Result<Vec<CableDiscovery>, StoreError>>()
+            let of_cables = group.clone().into_par_iter().zip(records);
+            of_cables.map(of_cable).collect::<Result<Vec<(CableDiscovery, Vec<RecordingFault>)>, StoreError>>()
         };
-        cables.extend(all.with(group.clone(), discover)??);
+        let mut found = all.with(group.clone(), discover)??;
+        if found.iter().any(|(_, corrected)| !corrected.is_empty()) {
+            // Loaded again, with the noise of their lengths, instead of kept all the time.
+            let given = samples.load(group.clone())?;
+            let given: Vec<CableRecord<'_>> = given.cables().collect();
+            let of_cables = found.par_iter_mut().zip(&given).filter(|((_, corrected), _)| !corrected.is_empty());
+            of_cables.for_each(|((found, corrected), given)| {
+                cable::add_corrected_faults(found, given, corrected, progress.stop_flag());
+            });
+        }
+        for (mut found, _) in found {
+            if !options.series {
+                (found.residual_before_n, found.residual_after_n) = (Vec::new(), Vec::new());
+            }
+            cables.push(found);
+        }
     }
     Ok(cables)
 }
 
-/// Runs the discovery on one cable, whose record `given` still has the noise of its length.
-fn discover_one(given: &CableRecord<'_>, task: &Task<'_>) -> Result<CableDiscovery, StoreError> {
+/// Runs the discovery on one cable. Returns the faults that were corrected for its whole log too, which are not among its findings yet.
+fn discover_one(task: &Task<'_>) -> Result<(CableDiscovery, Vec<RecordingFault>), StoreError> {
     let (record, stop) = (task.record, task.progress.stop_flag());
     let of_length = task.all.noise.as_ref().and_then(|noise| noise.faults.get(task.own)?.clone());
     let tared = tared::tared(record, stop);
     let (mut found, late) = match &tared {
-        Some((rows, _)) => discover_retimed(&record.with_signals(rows), task)?,
+        Some((zeroed, _)) => discover_retimed(&record.zeroed(zeroed), task)?,
         None => discover_retimed(record, task)?,
     };
     found.add_to_zeros(tared.as_ref().map_or(&[][..], |(_, changed_n)| changed_n));
-    for fault in late.into_iter().chain(of_length) {
-        cable::add_corrected_fault(&mut found, given, fault, stop);
-    }
     if let Some(unexplained) = &mut found.unexplained {
         unexplained.neighbours = neighbours_of(&found.residual_after_n, task)?;
     }
-    if !task.options.series {
-        (found.residual_before_n, found.residual_after_n) = (Vec::new(), Vec::new());
-    }
-    Ok(found)
+    Ok((found, late.into_iter().chain(of_length).collect()))
 }

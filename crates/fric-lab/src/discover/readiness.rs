@@ -40,15 +40,15 @@ const LONGER: &str = "Record a longer run, best that of `fric-cli excite`.";
 
 /// Returns what a cable's record lacks.
 pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
-    let with_reference = record.rows.iter().filter(|row| row.reference_n.is_finite()).count();
+    let with_reference = record.references_n.iter().filter(|reference_n| reference_n.is_finite()).count();
     if with_reference == 0 {
         return Some(Lack::new(
             "the log has no reference force of it, or none that is a number",
             "Record the force of the cable at the platform beside its other signals.",
         ));
     }
-    let counts = |row: &Row| row.is_sound() && row.reference_n.is_finite();
-    let sound = record.rows.iter().filter(|row| counts(row)).count();
+    let counts = |(row, reference_n): &(&Row, &f64)| row.is_sound() && reference_n.is_finite();
+    let sound = record.rows.iter().zip(record.references_n).filter(counts).count();
     if sound == 0 {
         return Some(Lack::new(
             "each sample is flagged, or has no tension on the cable",

@@ -1,5 +1,7 @@
 //! Types that hold the result of a discovery for one cable.
 
+use std::sync::Arc;
+
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
@@ -144,7 +146,7 @@ pub struct CableDiscovery {
     /// Friction over speed and length, measured and by both models.
     pub curves: FrictionCurves,
     /// Time of each cycle, s since the first sample; several logs follow one another.
-    pub times_s: Vec<f64>,
+    pub times_s: Arc<Vec<f64>>,
     /// Residual of the given model in each cycle, N; NaN where a sample does not count.
     pub residual_before_n: Vec<f64>,
     /// Residual of the extended model in each cycle, N; NaN where a sample does not count.
@@ -207,7 +209,7 @@ impl CableDiscovery {
             lack: Some(lack),
             profiles: Vec::new(),
             curves: FrictionCurves::default(),
-            times_s: Vec::new(),
+            times_s: Arc::default(),
             residual_before_n: Vec::new(),
             residual_after_n: Vec::new(),
         }

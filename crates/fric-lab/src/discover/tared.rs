@@ -7,7 +7,8 @@ use std::sync::atomic::AtomicBool;
 
 use super::cable::given_to;
 use super::workbench::Workbench;
-use crate::fit::{CableRecord, LogZero, Row};
+use crate::fit::{CableRecord, LogZero};
+use crate::samples::cable::Zeroed;
 use crate::samples::interpolated::measured;
 use crate::samples::record::PerLog;
 use crate::samples::split::split;
@@ -17,14 +18,14 @@ const ROUNDS: usize = 3;
 
 /// Returns the cycles with the zeros of the given model changed in the signals, and by how much in each log, N. Returns `None` if the sensor has the same
 /// zero in all logs, or if the log does not allow a fit.
-pub fn tared(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>, Vec<f64>)> {
+pub fn tared<'a>(record: &CableRecord<'a>, stop: &AtomicBool) -> Option<(Zeroed<'a>, Vec<f64>)> {
     let Some(PerLog { zero: LogZero::Sensor, .. }) = record.per_log else { return None };
     let (counts, start) = given_to(record, stop)?;
     let (blocks, measured) = (split(record), measured(record));
     let mut changed_n = vec![0.0; record.logs().count()];
     for _ in 0..ROUNDS {
-        let rows = record.with_zeros(&changed_n);
-        let record = record.with_signals(&rows);
+        let zeroed = record.with_zeros(&changed_n);
+        let record = record.zeroed(&zeroed);
         let bench = Workbench { record, blocks: &blocks, counts: &counts, measured: &measured, stop };
         let given = bench.try_one(&start);
         let steps_n = bench.problem(&given.free, None).zero_changes_n(&given.values);

@@ -1,6 +1,7 @@
 //! Fits trial models of one cable to the training samples and judges them on the held-out samples.
 
 use std::rc::Rc;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use fric_core::parameters::{OFFSET, Values};
@@ -8,11 +9,14 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::certainty::undetermined::inverse_of_normal;
-use crate::fit::{CableRecord, Parameter, Row};
+use crate::fit::{CableRecord, Parameter};
+use crate::samples::record::PerLog;
 use crate::samples::split::Block;
 use crate::search::gang::{Gang, Seat};
+use crate::search::pass::{Forces, Part};
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::solve::search_near;
+use crate::search::stream::Stream;
 
 /// Distance from its minimum at which a model is judged, in standard errors: the sum of squares then changes by less than noise does.
 pub const NEAR_ERRORS: f64 = 0.5;
@@ -94,8 +98,8 @@ impl<'a> Workbench<'a> {
     /// Returns the standard deviation of the reference over the held-out samples, N; NaN if there are none.
     pub fn reference_variation_n(&self) -> f64 {
         let used = self.used(true);
-        let rows = self.record.rows.iter().zip(&used).filter(|(_, used)| **used);
-        let known_n = rows.map(|(row, _)| row.reference_n);
+        let known_n =
+            self.record.references_n.iter().zip(&used).filter(|(_, used)| **used).map(|(known_n, _)| *known_n);
         let mean = |numbers: &mut dyn Iterator<Item = f64>| {
             let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
             sum / count
@@ -150,20 +154,20 @@ impl<'a> Workbench<'a> {
             values = found.first().copied().unwrap_or(values);
             evaluation_count = minimum.evaluation_count;
         }
-        let residuals_n = bench.residuals_with(&problem, &values);
-        let left_n = |cycle: usize| residuals_n.get(cycle).copied().unwrap_or(f64::NAN);
+        let found = bench.evaluated_with(&problem, &values);
+        let left_n = |cycle: usize| found.residual_n(cycle);
         let gain = self.record.params.frictionless_gain();
         let added_n = |cycle: usize| {
-            let frictionless_n = |row: &Row| row.signals.sensor_force_n * gain + values[OFFSET];
-            let row = self.record.rows.get(cycle);
-            left_n(cycle) + row.map_or(f64::NAN, |row| row.reference_n - frictionless_n(row))
-        };
-        // Zeros of the logs are no part of what the model adds.
-        let without_zeros_n = problem.per_log().map(|_| bench.added_with(&problem, &values));
-        let added_n = |cycle: usize| match &without_zeros_n {
-            Some(added_n) if left_n(cycle).is_finite() => added_n.get(cycle).copied().unwrap_or(f64::NAN),
-            Some(_) => f64::NAN,
-            None => added_n(cycle),
+            let Some(row) = self.record.rows.get(cycle) else { return f64::NAN };
+            let left_n = found.residual_n(cycle);
+            // Zeros of the logs are no part of what the model adds.
+            match &found.zero_shifts_n {
+                Some(_) if left_n.is_finite() => found.added_n(cycle),
+                Some(_) => f64::NAN,
+                None => {
+                    left_n + (self.record.reference_n(cycle) - (row.signals.sensor_force_n * gain + values[OFFSET]))
+                }
+            }
         };
         let squares = |held_out: bool, number: &dyn Fn(usize) -> f64| -> f64 {
             let blocks = self.blocks.iter().filter(|block| block.held_out == held_out);
@@ -184,37 +188,100 @@ impl<'a> Workbench<'a> {
     /// Returns the force of the model minus the reference in each cycle, N; NaN where a sample does not count. Where each log has a zero of its own, the
     /// training samples of a log determine it.
     pub fn residuals_n(&self, values: &Values) -> Vec<f64> {
-        self.residuals_with(&self.problem(&[], None), values)
+        self.evaluated(values).residuals_n().collect()
     }
 
-    /// Returns what the model adds in each cycle to the force that the sensor implies without friction, N.
-    pub fn added_n(&self, values: &Values) -> Vec<f64> {
-        self.added_with(&self.problem(&[], None), values)
+    /// Evaluates a model in each cycle.
+    pub fn evaluated(&self, values: &Values) -> Evaluated<'_, 'a> {
+        self.evaluated_with(&self.problem(&[], None), values)
     }
 
-    fn added_with(&self, problem: &Problem<'_>, values: &Values) -> Vec<f64> {
-        let forces = problem.forces(&[*values]).unwrap_or_default();
-        let gain = self.record.params.frictionless_gain();
-        let added_n = |(cycle, row): (usize, &Row)| {
-            let force_n = forces.first().map_or(f64::NAN, |forces| forces.at(cycle).0);
-            force_n - values[OFFSET] - row.signals.sensor_force_n * gain
-        };
-        self.record.rows.iter().enumerate().map(added_n).collect()
+    /// Returns the residuals of several models, to be computed along with the log.
+    pub fn residual_streams(&self, models: &[Values]) -> ResidualStreams<'_, 'a> {
+        let member = Member { record: self.record, free: Vec::new() };
+        let problem = self.problem(&[], None);
+        ResidualStreams {
+            bench: self,
+            parts: models.iter().map(|values| member.part(values, true)).collect(),
+            zero_changes_n: models.iter().map(|values| problem.zero_changes_n(values)).collect(),
+        }
+    }
+
+    fn evaluated_with(&self, problem: &Problem<'_>, values: &Values) -> Evaluated<'_, 'a> {
+        Evaluated {
+            bench: self,
+            offset_n: values[OFFSET],
+            forces: problem.forces(&[*values]).and_then(|mut forces| forces.pop()).unwrap_or_default(),
+            zero_shifts_n: problem.zero_shifts_n(values),
+        }
     }
 
     /// Returns the residuals with a measured reference, as a series with its gaps.
     pub fn measured_of(&self, residual_n: &[f64]) -> Vec<f64> {
         residual_n.iter().zip(self.measured).filter(|(_, measured)| **measured).map(|(number, _)| *number).collect()
     }
+}
 
-    fn residuals_with(&self, problem: &Problem<'_>, values: &Values) -> Vec<f64> {
-        let forces = problem.forces(&[*values]).unwrap_or_default();
-        let force_n = |cycle: usize| forces.first().map_or(f64::NAN, |forces| forces.at(cycle).0);
-        let by_zeros_n = problem.zero_shifts_n(values);
-        let shift_n = |cycle: usize| by_zeros_n.as_ref().and_then(|of| of.get(cycle)).copied().unwrap_or(0.0);
-        let left_n = |cycle: usize, row: &Row| force_n(cycle) - row.reference_n + shift_n(cycle);
-        let rows = self.record.rows.iter().zip(self.counts).enumerate();
-        rows.map(|(cycle, (row, counts))| if *counts { left_n(cycle, row) } else { f64::NAN }).collect()
+/// A model of one cable in each cycle.
+pub struct Evaluated<'b, 'a> {
+    bench: &'b Workbench<'a>,
+    offset_n: f64,
+    forces: Arc<Forces>,
+    zero_shifts_n: Option<Vec<f64>>,
+}
+
+impl Evaluated<'_, '_> {
+    /// Returns the force of the model minus the reference in a cycle, N; NaN where the sample does not count. See [`Workbench::residuals_n`].
+    pub fn residual_n(&self, cycle: usize) -> f64 {
+        if self.bench.counts.get(cycle) != Some(&true) {
+            return f64::NAN;
+        }
+        let shift_n = self.zero_shifts_n.as_ref().and_then(|of| of.get(cycle)).copied().unwrap_or(0.0);
+        self.forces.at(cycle).0 - self.bench.record.reference_n(cycle) + shift_n
+    }
+
+    /// Returns the same of each cycle.
+    pub fn residuals_n(&self) -> impl Iterator<Item = f64> {
+        (0..self.bench.record.rows.len()).map(|cycle| self.residual_n(cycle))
+    }
+
+    /// Returns what the model adds in a cycle to the force that the sensor implies without friction, N. Zeros of the logs are no part of it.
+    pub fn added_n(&self, cycle: usize) -> f64 {
+        let Some(row) = self.bench.record.rows.get(cycle) else { return f64::NAN };
+        let gain = self.bench.record.params.frictionless_gain();
+        self.forces.at(cycle).0 - self.offset_n - row.signals.sensor_force_n * gain
+    }
+}
+
+/// The residuals of several models of one cable. They come along with the log, because series of many models would take up more memory than the log.
+pub struct ResidualStreams<'b, 'a> {
+    bench: &'b Workbench<'a>,
+    parts: Vec<Part<'a>>,
+    /// Of each model, the changes of the zeros of the logs.
+    zero_changes_n: Vec<Vec<Option<f64>>>,
+}
+
+impl ResidualStreams<'_, '_> {
+    /// Starts at the first cycle. Returns a function that appends the residual of each model in a cycle, N: see [`Workbench::residuals_n`]. Cycles must
+    /// ascend.
+    pub fn start(&self) -> impl FnMut(usize, &mut Vec<f64>) {
+        let record = &self.bench.record;
+        let mut stream = Stream::new(self.parts.clone());
+        move |cycle, residuals_n| {
+            stream.advance_to(cycle);
+            let counts = self.bench.counts.get(cycle) == Some(&true);
+            let reference_n = if counts { record.reference_n(cycle) } else { f64::NAN };
+            residuals_n.extend(self.zero_changes_n.iter().enumerate().map(|(model, changes_n)| {
+                let (force_n, derivatives) = stream.at(model, cycle);
+                let shift_n = if let Some(PerLog { zero, .. }) = record.per_log {
+                    let change_n = changes_n.get(record.log_index(cycle)).copied().flatten().unwrap_or(0.0);
+                    zero.lever(derivatives) * change_n
+                } else {
+                    0.0
+                };
+                force_n - reference_n + shift_n
+            }));
+        }
     }
 }
 

@@ -13,8 +13,9 @@ use super::{FitOptions, Progress, start};
 use crate::candidates::newcomers::with_newcomers;
 use crate::certainty::log_zeros::{LogZeroEstimate, log_zeros};
 use crate::replay::Deviation;
+use crate::samples::cable::{CableRecord, Zeroed};
 use crate::samples::interpolated::measured;
-use crate::samples::record::{CableRecord, LogZero, Measurements, PerLog, Row};
+use crate::samples::record::{LogZero, Measurements, PerLog};
 use crate::samples::selection;
 use crate::samples::selection::Standing;
 use crate::search::gang::{Gang, Seat};
@@ -88,8 +89,8 @@ fn with_sensor_zeros(record: &CableRecord<'_>, options: &FitOptions, stop: &Atom
     let mut rounds = 0;
     loop {
         rounds += 1;
-        let rows = record.with_zeros(&changed_n);
-        let tared = record.with_signals(&rows);
+        let zeroed = record.with_zeros(&changed_n);
+        let tared = record.zeroed(&zeroed);
         let gang = Gang::new(1, stop);
         let search = Search::run(&tared, &prepared(&tared), options, stop, gang.seat(0));
         let zeros = search.log_zeros();
@@ -201,7 +202,7 @@ fn warm_up_was_misjudged(
 
 /// Returns the standing of each sample before anything is known about the friction.
 pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
-    let mut standings = selection::first_look(record, |_, row| row.reference_n.is_finite());
+    let mut standings = selection::first_look(record, |cycle| record.reference_n(cycle).is_finite());
     if !record.reference_is_known {
         selection::leave_out_still_references(record, &mut standings);
         selection::leave_out_interpolated(&measured(record), &mut standings);
@@ -278,10 +279,9 @@ pub(crate) fn cable_fits(
 pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Vec<f64>> {
     let stop = AtomicBool::new(false);
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
-    let tared = |(record, fit): (&CableRecord<'_>, &CableFit)| fit.tared(record);
-    let tared: Vec<Option<Vec<Row>>> = records.iter().zip(fits).map(tared).collect();
-    let tared = records.iter().zip(&tared).map(|(record, rows)| match rows {
-        Some(rows) => record.with_signals(rows),
+    let tared: Vec<Option<Zeroed<'_>>> = records.iter().zip(fits).map(|(record, fit)| fit.tared(record)).collect();
+    let tared = records.iter().zip(&tared).map(|(record, tared)| match tared {
+        Some(tared) => record.zeroed(tared),
         None => *record,
     });
     let problem = Problem {
@@ -294,8 +294,8 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
     };
     let values: Vec<Values> = fits.iter().map(|fit| fit.values).collect();
     let of_cable = |(member, forces): (&Member<'_>, &Arc<Forces>)| {
-        let rows = member.record.rows.iter().enumerate();
-        rows.map(|(cycle, row)| forces.at(cycle).0 - row.reference_n).collect()
+        let references_n = member.record.references_n.iter().enumerate();
+        references_n.map(|(cycle, reference_n)| forces.at(cycle).0 - reference_n).collect()
     };
     problem.members.iter().zip(&problem.forces(&values).unwrap_or_default()).map(of_cable).collect()
 }
@@ -304,10 +304,10 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
 /// in a replay.
 fn force_errors(record: &CableRecord<'_>, forces: &Forces, zero_shifts_n: Option<&[f64]>) -> ForceErrors {
     let mut errors = ForceErrors { before_n: frictionless_errors(record), ..ForceErrors::default() };
-    for (cycle, row) in record.rows.iter().enumerate().filter(|(_, row)| row.reference_n.is_finite()) {
-        errors.reference_n.add(row.reference_n);
+    for (cycle, reference_n) in record.references_n.iter().enumerate().filter(|(_, known)| known.is_finite()) {
+        errors.reference_n.add(*reference_n);
         let shift_n = zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied();
-        errors.after_n.add(forces.at(cycle).0 - row.reference_n + shift_n.unwrap_or(0.0));
+        errors.after_n.add(forces.at(cycle).0 - reference_n + shift_n.unwrap_or(0.0));
     }
     errors
 }
@@ -315,9 +315,9 @@ fn force_errors(record: &CableRecord<'_>, forces: &Forces, zero_shifts_n: Option
 /// Returns the error of the force at the platform without compensation, over every sample that has a reference.
 fn frictionless_errors(record: &CableRecord<'_>) -> Deviation {
     let gain = record.params.frictionless_gain();
-    let known = record.rows.iter().filter(|row| row.reference_n.is_finite());
-    known.fold(Deviation::default(), |mut sum, row| {
-        sum.add(row.signals.sensor_force_n * gain - row.reference_n);
+    let known = record.rows.iter().zip(record.references_n).filter(|(_, reference_n)| reference_n.is_finite());
+    known.fold(Deviation::default(), |mut sum, (row, reference_n)| {
+        sum.add(row.signals.sensor_force_n * gain - reference_n);
         sum
     })
 }

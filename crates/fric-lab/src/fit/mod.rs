@@ -27,7 +27,8 @@ pub(crate) mod wrench;
 
 pub use crate::certainty::determined::HALF_INTERVAL;
 pub use crate::certainty::directions::{OpenDirection, open_directions};
-pub use crate::samples::record::{CableRecord, LogZero, Measurements, Reference, Row};
+pub use crate::samples::cable::CableRecord;
+pub use crate::samples::record::{LogZero, Measurements, Reference, Row};
 pub use crate::samples::selection::SampleCounts;
 pub use crate::samples::store::{SampleStore, StoreError};
 pub use crate::search::dual::Dual;

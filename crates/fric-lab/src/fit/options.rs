@@ -5,7 +5,8 @@ use fric_core::effects::Effect;
 use fric_core::parameters::OFFSET;
 
 use crate::candidates::catalogue::is_fitted_once_it_acts;
-use crate::samples::record::{CableRecord, LogZero};
+use crate::samples::cable::CableRecord;
+use crate::samples::record::LogZero;
 use crate::search::solve::Weighing;
 use crate::search::vector::Parameter;
 

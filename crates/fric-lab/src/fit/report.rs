@@ -5,7 +5,8 @@ use nalgebra::DMatrix;
 
 use crate::certainty::log_zeros::LogZeroEstimate;
 use crate::replay::{Deviation, WrenchErrors, WrenchReference};
-use crate::samples::record::{CableRecord, LogZero, Row};
+use crate::samples::cable::{CableRecord, Zeroed};
+use crate::samples::record::LogZero;
 use crate::samples::selection::SampleCounts;
 use crate::search::optimizer::Termination;
 use crate::search::vector::Parameter;
@@ -129,7 +130,7 @@ impl CableFit {
     }
 
     /// Returns a cable's cycles with the zero of each log changed in the data, so that `values` hold for all; `None` if all logs have the same zero.
-    pub(crate) fn tared(&self, record: &CableRecord<'_>) -> Option<Vec<Row>> {
+    pub(crate) fn tared<'a>(&self, record: &CableRecord<'a>) -> Option<Zeroed<'a>> {
         let last = LogValue::last(&self.per_log)?;
         let change_n = |log: &Option<LogValue>| log.map_or(0.0, |log| log.value - last.value);
         Some(record.with_zeros(&self.per_log.iter().map(change_n).collect::<Vec<_>>()))

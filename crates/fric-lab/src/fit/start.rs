@@ -182,10 +182,12 @@ fn sliding_gram(problem: &Problem<'_>, values: &[Values]) -> Option<Gram> {
         return problem.gram(values);
     };
     let counted = problem.used.iter().filter(|used| **used).count();
-    let used = member.record.rows.iter().zip(&problem.used).filter(|(_, used)| **used).map(|(row, _)| *row);
-    let rows: Vec<Row> = used.step_by(counted / ENOUGH_SLIDING + 1).collect();
+    let used = problem.used.iter().enumerate().filter(|(_, used)| **used).map(|(cycle, _)| cycle);
+    let few = used.step_by(counted / ENOUGH_SLIDING + 1);
+    let of_cycle = |cycle: usize| Some((*member.record.rows.get(cycle)?, *member.record.references_n.get(cycle)?));
+    let (rows, references_n): (Vec<Row>, Vec<f64>) = few.filter_map(of_cycle).unzip();
     let reduced = Problem {
-        members: vec![Member { record: member.record.as_one_log(&rows), free: member.free.clone() }],
+        members: vec![Member { record: member.record.as_one_log(&rows, &references_n), free: member.free.clone() }],
         comparison: Comparison::Forces,
         loss: problem.loss,
         used: vec![true; rows.len()],

@@ -22,9 +22,10 @@ use super::{FitOptions, Progress, start};
 use crate::candidates::newcomers::with_newcomers;
 use crate::certainty::undetermined::{reported_covariance, vagueness};
 use crate::replay::{WrenchErrors, WrenchReference};
+use crate::samples::cable::CableRecord;
 use crate::samples::interpolated::measured_wrenches;
 use crate::samples::noise::white_noise;
-use crate::samples::record::{CableRecord, Measurements};
+use crate::samples::record::Measurements;
 use crate::samples::selection;
 use crate::samples::selection::Standing;
 use crate::samples::split::split;
@@ -258,7 +259,7 @@ impl<'a> Case<'a> {
         let counted = references.counts();
         let of_cable = |record: &CableRecord<'_>| {
             let mut standings =
-                selection::first_look(record, |place, _| has_wrench(place) && reaches(place) && counts(place));
+                selection::first_look(record, |place| has_wrench(place) && reaches(place) && counts(place));
             selection::leave_out_interpolated(&counted, &mut standings);
             standings
         };

@@ -10,15 +10,14 @@ pub struct Bins {
 
 impl Bins {
     /// Creates the bins over the samples that have both condition and residual. Returns `None` if the condition is constant.
-    pub fn new(condition: &Condition, residual_n: &[f64]) -> Option<Self> {
+    pub fn new(condition: &Condition<'_>, residual_n: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = condition
-            .values
-            .iter()
+            .values()
             .zip(residual_n)
             .filter(|(value, residual_n)| value.is_finite() && residual_n.is_finite())
-            .map(|(value, _)| *value)
+            .map(|(value, _)| value)
             .collect();
-        sorted.sort_by(f64::total_cmp);
+        sorted.sort_unstable_by(f64::total_cmp);
         let (first, last) = (*sorted.first()?, sorted.len().checked_sub(1)?);
         let mut edges: Vec<f64> = match condition.bins {
             Spacing::Crowds(count) => (0..=count).filter_map(|bin| sorted.get(bin * last / count).copied()).collect(),

@@ -1,8 +1,10 @@
 //! The operating conditions of every cycle: quantities that friction may depend on, and over which a disagreement with the model may be concentrated.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use super::record::{CableRecord, Row};
+use super::cable::CableRecord;
+use super::record::Row;
 use crate::replay::Deviation;
 
 /// Number of cycles over which rates are computed.
@@ -32,70 +34,100 @@ impl Spacing {
     }
 }
 
-/// One operating condition over all cycles.
-#[derive(Clone, Debug)]
-pub struct Condition {
+/// One operating condition over all cycles. Its values are computed from the cycles of the record where they are needed, because a series for each
+/// condition would take up more memory than the record.
+#[derive(Clone)]
+pub struct Condition<'a> {
     /// Its name in results.
     pub signal: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Its value in each cycle; NaN if it has none. Copies share them.
-    pub values: Arc<Vec<f64>>,
     /// Its division into bins.
     pub bins: Spacing,
+    count: usize,
+    of_cycle: Arc<dyn Fn(usize) -> f64 + Send + Sync + 'a>,
+}
+
+impl<'a> Condition<'a> {
+    /// Creates the condition from its value in each of the record's cycles; NaN if it has none.
+    fn new(
+        record: &CableRecord<'a>,
+        (signal, unit, bins): (&'static str, &'static str, Spacing),
+        of_cycle: impl Fn(usize) -> f64 + Send + Sync + 'a,
+    ) -> Self {
+        Self { signal, unit, bins, count: record.rows.len(), of_cycle: Arc::new(of_cycle) }
+    }
+
+    /// Returns the condition divided into at most `most` bins.
+    pub fn with_at_most(&self, most: usize) -> Self {
+        Self { bins: self.bins.at_most(most), ..self.clone() }
+    }
+
+    /// Returns its value in a cycle; NaN if it has none.
+    pub fn at(&self, cycle: usize) -> f64 {
+        (self.of_cycle)(cycle)
+    }
+
+    /// Returns its value in each cycle; NaN if it has none.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        (0..self.count).map(|cycle| self.at(cycle))
+    }
 }
 
 /// Returns all conditions of a cable that its record contains.
-pub fn conditions(record: &CableRecord<'_>) -> Vec<Condition> {
-    let mut conditions = Vec::new();
-    let mut add = |signal, unit, bins, of_log: &dyn Fn(&[Row]) -> Vec<f64>| {
-        let mut values = vec![f64::NAN; record.rows.len()];
-        for (start, rows) in record.logs() {
-            for (place, value) in values.iter_mut().skip(start).zip(of_log(rows)) {
-                *place = value;
-            }
-        }
-        conditions.push(Condition { signal, unit, values: Arc::new(values), bins });
+pub fn conditions<'a>(record: &CableRecord<'a>) -> Vec<Condition<'a>> {
+    let record = *record;
+    let by_row = |name: (&'static str, &'static str, Spacing), value: fn(&Row) -> f64| {
+        Condition::new(&record, name, move |cycle| record.rows.get(cycle).map_or(f64::NAN, value))
     };
-    let rows_to = |value: fn(&Row) -> f64| move |rows: &[Row]| rows.iter().map(value).collect::<Vec<f64>>();
-    let cycle_s = record.cycle_s;
+    let crowds = Spacing::Crowds(BINS);
     let standstill = |row: &Row| f64::from(u8::from(row.signals.displacement_m.abs() <= 0.0));
-    add("standstill", "1", Spacing::Crowds(2), &rows_to(standstill));
-    add("direction", "1", Spacing::Crowds(3), &rows_to(|row| sign(row.signals.displacement_m)));
-    add("way_since_reversal", "m", Spacing::Crowds(BINS), &ways_since_reversal_m);
-    add("speed", "m/s", Spacing::Crowds(BINS), &rows_to(|row| row.signals.speed_m_per_s.abs()));
-    add("acceleration", "m/s²", Spacing::Crowds(BINS), &|rows| {
-        rates(rows, cycle_s, |row| row.signals.speed_m_per_s).into_iter().map(f64::abs).collect()
-    });
-    add("sensor_force", "N", Spacing::Crowds(BINS), &rows_to(|row| row.signals.sensor_force_n));
-    add("force_rate", "N/s", Spacing::Crowds(BINS), &|rows| rates(rows, cycle_s, |row| row.signals.sensor_force_n));
-    let moving_m_per_s = RESTING_RATIO * usual_speed_m_per_s(record);
-    add("length", "m", Spacing::Widths(LENGTH_BINS), &move |rows| {
-        let moves = |row: &Row| row.signals.speed_m_per_s.abs() > moving_m_per_s;
-        rows.iter().map(|row| if moves(row) { row.signals.length_m } else { f64::NAN }).collect()
-    });
+    let ways_m = ways_since_reversal_m(&record);
+    let moving_m_per_s = RESTING_RATIO * usual_speed_m_per_s(&record);
+    let length_m = move |row: &Row| {
+        if row.signals.speed_m_per_s.abs() > moving_m_per_s { row.signals.length_m } else { f64::NAN }
+    };
+    let mut conditions = vec![
+        by_row(("standstill", "1", Spacing::Crowds(2)), standstill),
+        by_row(("direction", "1", Spacing::Crowds(3)), |row| sign(row.signals.displacement_m)),
+        Condition::new(&record, ("way_since_reversal", "m", crowds), move |cycle| {
+            ways_m.get(cycle).copied().unwrap_or(f64::NAN)
+        }),
+        by_row(("speed", "m/s", crowds), |row| row.signals.speed_m_per_s.abs()),
+        Condition::new(&record, ("acceleration", "m/s²", crowds), move |cycle| {
+            rate(&record, cycle, |row| row.signals.speed_m_per_s).abs()
+        }),
+        by_row(("sensor_force", "N", crowds), |row| row.signals.sensor_force_n),
+        Condition::new(&record, ("force_rate", "N/s", crowds), move |cycle| {
+            rate(&record, cycle, |row| row.signals.sensor_force_n)
+        }),
+        Condition::new(&record, ("length", "m", Spacing::Widths(LENGTH_BINS)), move |cycle| {
+            record.rows.get(cycle).map_or(f64::NAN, length_m)
+        }),
+    ];
     if record.params.needs_pose() {
-        add("wrap", "deg", Spacing::Crowds(BINS), &rows_to(|row| row.pose_wrap.wrap_rad().to_degrees()));
+        conditions.push(by_row(("wrap", "deg", crowds), |row| row.pose_wrap.wrap_rad().to_degrees()));
     }
     if let Some(radius_m) = record.params.pose_pulley_radius_m() {
-        add("pulley_angle", "deg", Spacing::Crowds(BINS), &move |rows| {
-            rows.iter().map(|row| (row.signals.length_m / radius_m).to_degrees().rem_euclid(360.0)).collect()
-        });
+        conditions.push(Condition::new(&record, ("pulley_angle", "deg", crowds), move |cycle| {
+            let angle = |row: &Row| (row.signals.length_m / radius_m).to_degrees().rem_euclid(360.0);
+            record.rows.get(cycle).map_or(f64::NAN, angle)
+        }));
     }
     conditions
 }
 
 /// Returns the force at the platform as a condition. The sensor force contains what a model does not explain: a residual depends on it whatever it
 /// comes from.
-pub fn load(record: &CableRecord<'_>) -> Condition {
-    let values = Arc::new(record.rows.iter().map(|row| row.reference_n).collect());
-    Condition { signal: "load", unit: "N", values, bins: Spacing::Crowds(BINS) }
+pub fn load<'a>(record: &CableRecord<'a>) -> Condition<'a> {
+    let of_cycle = *record;
+    Condition::new(record, ("load", "N", Spacing::Crowds(BINS)), move |cycle| of_cycle.reference_n(cycle))
 }
 
 /// Returns the time as a condition, for warm-up and wear.
-pub fn time(record: &CableRecord<'_>) -> Condition {
-    let values = Arc::new((0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect());
-    Condition { signal: "time", unit: "s", values, bins: Spacing::Crowds(BINS) }
+pub fn time<'a>(record: &CableRecord<'a>) -> Condition<'a> {
+    let of_cycle = *record;
+    Condition::new(record, ("time", "s", Spacing::Crowds(BINS)), move |cycle| of_cycle.time_s(cycle))
 }
 
 /// Returns the root mean square of the speed, m/s.
@@ -116,26 +148,26 @@ pub fn sign(number: f64) -> f64 {
     }
 }
 
-/// Returns the distance since the last reversal, m. A cable at rest keeps it.
-fn ways_since_reversal_m(rows: &[Row]) -> Vec<f64> {
-    let mut way_m = 0.0_f64;
-    rows.iter()
-        .map(|row| {
+/// Returns the distance since the last reversal in each cycle, m. A cable at rest keeps it.
+fn ways_since_reversal_m(record: &CableRecord<'_>) -> Vec<f64> {
+    let mut all_m = vec![f64::NAN; record.rows.len()];
+    for (start, rows) in record.logs() {
+        let mut way_m = 0.0_f64;
+        for (place, row) in all_m.iter_mut().skip(start).zip(rows) {
             let step_m = row.signals.displacement_m;
             way_m = if way_m * step_m < 0.0 { step_m } else { way_m + step_m };
-            way_m.abs()
-        })
-        .collect()
+            *place = way_m.abs();
+        }
+    }
+    all_m
 }
 
-/// Returns the rates of a signal over some cycles on either side.
-fn rates(rows: &[Row], cycle_s: f64, value: fn(&Row) -> f64) -> Vec<f64> {
+/// Returns the rate of a signal over some cycles on either side, within the log of the cycle.
+fn rate(record: &CableRecord<'_>, cycle: usize, value: fn(&Row) -> f64) -> f64 {
     let half = RATE_CYCLES / 2;
-    let rate = |place: usize| {
-        let (from, to) = (place.saturating_sub(half), (place + half).min(rows.len() - 1));
-        let change = rows.get(to).map_or(f64::NAN, value) - rows.get(from).map_or(f64::NAN, value);
-        let cycle = |place: usize| rows.get(place).map_or(f64::NAN, |row| row.cycle);
-        change / ((cycle(to) - cycle(from)) * cycle_s)
-    };
-    (0..rows.len()).map(rate).collect()
+    let Range { start, end } = record.log_of(cycle);
+    let (from, to) = (cycle.saturating_sub(half).max(start), (cycle + half).min(end.saturating_sub(1)));
+    let of = |place: usize, value: fn(&Row) -> f64| record.rows.get(place).map_or(f64::NAN, value);
+    let cycle_of = |row: &Row| row.cycle;
+    (of(to, value) - of(from, value)) / ((of(to, cycle_of) - of(from, cycle_of)) * record.cycle_s)
 }

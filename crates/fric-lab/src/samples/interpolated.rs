@@ -3,7 +3,8 @@
 
 use fric_core::Wrench;
 
-use super::record::{CableRecord, Measurements, Row};
+use super::cable::CableRecord;
+use super::record::{Measurements, Row};
 
 /// A log's reference counts as interpolated if more than this fraction of its moving samples lies on the line between their neighbours. A reference
 /// with few digits at the rate of the cycle has a smaller fraction by chance; so does one measured at more than a third of that rate.
@@ -22,8 +23,8 @@ pub fn measured(record: &CableRecord<'_>) -> Vec<bool> {
         return vec![true; record.rows.len()];
     }
     let of_log = |(start, rows): (usize, &[Row])| {
-        let points: Vec<(f64, f64)> =
-            rows.iter().enumerate().map(|(place, row)| (record.time_s(start + place), row.reference_n)).collect();
+        let cycles = start..start + rows.len();
+        let points: Vec<(f64, f64)> = cycles.map(|cycle| (record.time_s(cycle), record.reference_n(cycle))).collect();
         of_log(&points)
     };
     record.logs().flat_map(of_log).collect()

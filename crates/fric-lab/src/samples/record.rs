@@ -10,10 +10,10 @@ use fric_core::effects::{UNKNOWN, sensor_offset};
 use fric_core::parameters::OFFSET;
 use fric_core::robot::RobotParams;
 use fric_core::signals::{BEFORE_FIRST, Conditioned, RawSignals, SignalLimits, SignalState, condition, next_cycle};
-use fric_core::{CableInput, CableParams, Pose, PoseWrap, Sample, Wrench};
+use fric_core::{CableInput, Pose, PoseWrap, Sample, Wrench};
 use nalgebra::Vector6;
 
-use super::noise::lasting_white_noise;
+use super::cable::CableRecord;
 use crate::clock::Clock;
 
 /// The reference that a fit compares the model with; it decides what is kept of a sample.
@@ -61,6 +61,15 @@ impl LogZero {
             Self::Sensor => sensor_offset::OFFSET,
         }
     }
+
+    /// Returns the derivative of a force with respect to the zero, from its derivatives behind those with respect to free parameters.
+    #[inline]
+    pub(crate) fn lever(self, behind_free: &[f64]) -> f64 {
+        match self {
+            Self::Platform => 1.0,
+            Self::Sensor => behind_free.first().copied().unwrap_or(0.0),
+        }
+    }
 }
 
 /// How a fit treats a zero that each log has of its own.
@@ -78,21 +87,20 @@ pub struct Row {
     pub signals: Conditioned<f64>,
     /// Wrap of the pulley that follows the pose.
     pub pose_wrap: PoseWrap,
-    /// Cable force measured at the platform, N; NaN if there is none.
-    pub reference_n: f64,
     /// Whether a cable that needs a pose has no usable one.
     pub pose_fault: bool,
     /// Cycles since the first one of its log.
     pub cycle: f64,
 }
 
-/// Count of the plain numbers of a row.
+/// Count of the plain numbers of a row with its reference.
 pub(crate) const ROW_WIDTH: usize = 9;
 
 impl Row {
-    /// Returns the row as plain numbers with the same bits, together with another fact about its cycle: eight numbers, and one with a bit for each fact.
-    pub(crate) fn to_numbers(self, fact: bool) -> [f64; ROW_WIDTH] {
-        let Self { signals, pose_wrap, reference_n, pose_fault, cycle } = self;
+    /// Returns the row as plain numbers with the same bits, together with the reference and another fact about its cycle: eight numbers, and one with a
+    /// bit for each fact.
+    pub(crate) fn to_numbers(self, reference_n: f64, fact: bool) -> [f64; ROW_WIDTH] {
+        let Self { signals, pose_wrap, pose_fault, cycle } = self;
         let Conditioned {
             sensor_force_n,
             displacement_m,
@@ -111,8 +119,8 @@ impl Row {
         [force, displacement, speed, length, wrap_factor, traction_ratio, reference_n, cycle, f64::from(bits)]
     }
 
-    /// Restores a row and the other fact from the plain numbers.
-    pub(crate) fn from_numbers(numbers: &[f64; ROW_WIDTH]) -> (Self, bool) {
+    /// Restores a row, the reference and the other fact from the plain numbers.
+    pub(crate) fn from_numbers(numbers: &[f64; ROW_WIDTH]) -> (Self, f64, bool) {
         let [
             sensor_force_n,
             displacement_m,
@@ -138,7 +146,8 @@ impl Row {
             jump,
             motion_finite,
         };
-        (Self { signals, pose_wrap: PoseWrap { wrap_factor, traction_ratio }, reference_n, pose_fault, cycle }, fact)
+        let pose_wrap = PoseWrap { wrap_factor, traction_ratio };
+        (Self { signals, pose_wrap, pose_fault, cycle }, reference_n, fact)
     }
 
     /// Whether a fit can use the cycle: no fault of sensor, motion or pose, and tension on the cable.
@@ -159,6 +168,21 @@ pub struct PlatformRecord {
     pub wrenches: Vec<Option<Wrench>>,
 }
 
+/// The rows of a cable, and its references in the same cycles, N. Copies share them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Samples {
+    pub rows: Arc<Vec<Row>>,
+    pub references_n: Arc<Vec<f64>>,
+}
+
+impl Samples {
+    /// Adds a cycle.
+    fn push(&mut self, row: Row, reference_n: f64) {
+        Arc::make_mut(&mut self.rows).push(row);
+        Arc::make_mut(&mut self.references_n).push(reference_n);
+    }
+}
+
 /// The samples of one or several logs of a robot, in memory: of all its cables, or of those that a
 /// [`SampleStore`](super::store::SampleStore) has loaded.
 #[derive(Clone, Debug)]
@@ -167,10 +191,12 @@ pub struct Measurements<'a> {
     reference: Reference,
     /// The cables whose rows are here.
     pub(super) held: Range<usize>,
-    /// The rows of the cables that are here.
-    pub(super) rows: Vec<Vec<Row>>,
+    /// The samples of the cables that are here.
+    pub(super) samples: Vec<Samples>,
     platform: PlatformRecord,
     per_log: Option<LogZero>,
+    /// Play to either side within which a change of the measured length counts as noise, m.
+    length_play_m: f64,
     starts: Vec<usize>,
     times_s: Arc<Vec<f64>>,
     log_start: LogStart,
@@ -196,9 +222,10 @@ impl<'a> Measurements<'a> {
             robot: *robot,
             reference,
             held: 0..count,
-            rows: vec![Vec::new(); count],
+            samples: vec![Samples::default(); count],
             platform: PlatformRecord::default(),
             per_log: None,
+            length_play_m: robot.monitor().length_noise_m,
             starts: Vec::new(),
             times_s: Arc::default(),
             log_start: LogStart::default(),
@@ -242,8 +269,8 @@ impl<'a> Measurements<'a> {
         let pose = sample.pose.filter(Pose::is_usable);
         let limits = self.robot.monitor().limits();
         let states = self.signals.iter_mut().zip(&mut self.pose_wraps);
-        let cables = self.robot.cables().iter().zip(&mut self.rows).zip(states);
-        for (index, ((params, rows), (state, wrap))) in cables.enumerate() {
+        let cables = self.robot.cables().iter().zip(&mut self.samples).zip(states);
+        for (index, ((params, samples), (state, wrap))) in cables.enumerate() {
             let input = sample.cables.get(index).copied().unwrap_or(NOTHING);
             let CableInput { sensor_force_n, length_m, speed_m_per_s } = input;
             let raw = RawSignals { sensor_force_n, length_m, speed_m_per_s };
@@ -255,7 +282,7 @@ impl<'a> Measurements<'a> {
             *wrap = pose_wrap.unwrap_or(*wrap);
             let reference_n = sample.reference_force_n.get(index).copied().unwrap_or(f64::NAN);
             let pose_fault = params.needs_pose() && pose_wrap.is_none();
-            rows.push(Row { signals, pose_wrap: *wrap, reference_n, pose_fault, cycle: self.cycle });
+            samples.push(Row { signals, pose_wrap: *wrap, pose_fault, cycle: self.cycle }, reference_n);
             if self.reference == Reference::Wrench {
                 let column = pose.as_ref().and_then(|pose| params.structure_column(pose));
                 self.platform.structure.push(column.unwrap_or_else(|| Vector6::repeat(f64::NAN)));
@@ -279,11 +306,11 @@ impl<'a> Measurements<'a> {
         self.reference
     }
 
-    /// Returns the same measurements with these rows of some cables alone.
-    pub(crate) fn holding(&self, held: Range<usize>, rows: Vec<Vec<Row>>) -> Self {
+    /// Returns the same measurements with these samples of some cables alone.
+    pub(crate) fn holding(&self, held: Range<usize>, samples: Vec<Samples>) -> Self {
         Self {
             held,
-            rows,
+            samples,
             platform: PlatformRecord::default(),
             starts: self.starts.clone(),
             times_s: Arc::clone(&self.times_s),
@@ -296,8 +323,31 @@ impl<'a> Measurements<'a> {
 
     /// Returns the same measurements with other rows for some of the cables that are here.
     pub(crate) fn with_rows(&self, rows: Vec<Option<Vec<Row>>>) -> Self {
-        let rows = self.rows.iter().zip(rows).map(|(given, rows)| rows.unwrap_or_else(|| given.clone()));
-        Self { platform: self.platform.clone(), ..self.holding(self.held.clone(), rows.collect()) }
+        let mut samples = self.samples.clone();
+        for (of_cable, rows) in samples.iter_mut().zip(rows) {
+            of_cable.rows = rows.map_or_else(|| Arc::clone(&of_cable.rows), Arc::new);
+        }
+        Self { samples, ..self.clone() }
+    }
+
+    /// Returns the same measurements with other references for some of the cables that are here.
+    pub(crate) fn with_references(&self, references_n: Vec<Option<Vec<f64>>>) -> Self {
+        let mut samples = self.samples.clone();
+        for (of_cable, references_n) in samples.iter_mut().zip(references_n) {
+            of_cable.references_n = references_n.map_or_else(|| Arc::clone(&of_cable.references_n), Arc::new);
+        }
+        Self { samples, ..self.clone() }
+    }
+
+    /// Returns the same measurements, conditioned again with other limits and thus with another play of the length.
+    pub(crate) fn conditioned(&self, limits: &SignalLimits) -> Self {
+        let rows = self.cables().map(|record| Some(record.conditioned(limits))).collect();
+        Self { length_play_m: limits.length_noise_m, ..self.with_rows(rows) }
+    }
+
+    /// Returns the time of each sample, s since the first one.
+    pub(crate) fn times_s(&self) -> Arc<Vec<f64>> {
+        Arc::clone(&self.times_s)
     }
 
     /// Returns the number of samples.
@@ -321,23 +371,25 @@ impl<'a> Measurements<'a> {
     /// Returns a cable's parameters and cycles; `None` past the robot's cables, and for a cable that is not here.
     #[must_use]
     pub fn cable(&self, index: usize) -> Option<CableRecord<'_>> {
-        let (params, rows) = (self.robot.cables().get(index)?, self.rows.get(index.checked_sub(self.held.start)?)?);
+        let params = self.robot.cables().get(index)?;
+        let Samples { rows, references_n } = self.samples.get(index.checked_sub(self.held.start)?)?;
         let (starts, times_s) = (self.starts.as_slice(), self.times_s.as_slice());
         let reference_is_known = self.robot.known_reference().is_some();
         let cycle_s = self.robot.cycle_s();
         let interval_s = usual_interval_s(times_s).unwrap_or(cycle_s);
-        let length_play_m = self.robot.monitor().length_noise_m;
         let per_log = self.per_log.map(|zero| PerLog { zero, in_columns: false });
         Some(CableRecord {
             params,
             rows,
+            references_n,
             starts,
             times_s,
             cycle_s,
             interval_s,
             reference_is_known,
-            length_play_m,
+            length_play_m: self.length_play_m,
             per_log,
+            added_noise: None,
         })
     }
 
@@ -380,138 +432,4 @@ fn usual_interval_s(times_s: &[f64]) -> Option<f64> {
     let middle = intervals.len() / 2;
     let median = (!intervals.is_empty()).then(|| *intervals.select_nth_unstable_by(middle, f64::total_cmp).1);
     median.filter(|interval_s| *interval_s > 0.0)
-}
-
-/// Half width of the play that suppresses noise of the length best, as a multiple of the noise's standard deviation. On a log with noise of 3 µm, the
-/// rms is 1.42 of its noise with 1σ, 1.03 with 2σ, 1.09 with 3σ, 1.21 with 4σ, and 3.7 without play.
-pub const PLAY_OF_NOISE: f64 = 2.0;
-
-/// The cycles of one cable.
-#[derive(Clone, Copy, Debug)]
-pub struct CableRecord<'a> {
-    /// Its given parameters.
-    pub params: &'a CableParams,
-    /// Its cycles, one log after the other.
-    pub rows: &'a [Row],
-    pub(crate) starts: &'a [usize],
-    pub(crate) times_s: &'a [f64],
-    /// Cycle time of the control loop, s.
-    pub cycle_s: f64,
-    /// Usual time between two samples of the log, s.
-    pub interval_s: f64,
-    /// Whether the reference is known rather than measured: it may then be constant, and does not count as interpolated.
-    pub(crate) reference_is_known: bool,
-    /// Play to either side within which a change of the measured length counts as noise, m.
-    pub(crate) length_play_m: f64,
-    /// The zero that each log has of its own.
-    pub(crate) per_log: Option<PerLog>,
-}
-
-impl<'a> CableRecord<'a> {
-    /// Returns the cycles with the zero of each log changed by so much, N, in the data instead of the parameter: a model with the common zero leaves on
-    /// them what it leaves with a zero per log.
-    pub(crate) fn with_zeros(&self, changes_n: &[f64]) -> Vec<Row> {
-        let mut rows = self.rows.to_vec();
-        let Some(PerLog { zero, .. }) = self.per_log else { return rows };
-        for ((start, log), change_n) in self.logs().zip(changes_n) {
-            for row in rows.iter_mut().skip(start).take(log.len()) {
-                match zero {
-                    LogZero::Platform => row.reference_n -= change_n,
-                    LogZero::Sensor => row.signals.sensor_force_n -= change_n,
-                }
-            }
-        }
-        rows
-    }
-
-    /// Returns a stretch of its cycles, as a log of its own.
-    pub(crate) fn stretch(&self, cycles: &Range<usize>) -> Self {
-        let rows = self.rows.get(cycles.clone()).unwrap_or_default();
-        Self { rows, starts: &[0], times_s: self.times_s.get(cycles.clone()).unwrap_or_default(), ..*self }
-    }
-
-    /// Returns other cycles of the same cable, as one log.
-    pub(crate) fn as_one_log<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
-    where
-        'a: 'b,
-    {
-        CableRecord { rows, starts: &[0], times_s: &[], ..*self }
-    }
-
-    /// Returns the same cycles with other start parameters.
-    pub(crate) fn with_params<'b>(&self, params: &'b CableParams) -> CableRecord<'b>
-    where
-        'a: 'b,
-    {
-        CableRecord { params, ..*self }
-    }
-
-    /// Returns the same cycles with other signals.
-    pub(crate) fn with_signals<'b>(&self, rows: &'b [Row]) -> CableRecord<'b>
-    where
-        'a: 'b,
-    {
-        CableRecord { rows, ..*self }
-    }
-
-    /// Returns the standard deviation of the white noise of the length, m; `None` if there is no permanent noise, or the cable always moves by more than
-    /// its play from sample to sample.
-    pub(crate) fn length_noise_m(&self) -> Option<f64> {
-        let of_log = |(_, rows): (usize, &[Row])| {
-            rows.iter().map(|row| row.signals.length_m).chain([f64::NAN]).collect::<Vec<f64>>()
-        };
-        lasting_white_noise(&self.logs().flat_map(of_log).collect::<Vec<f64>>(), PLAY_OF_NOISE)
-    }
-
-    /// Returns the record with cycles that were conditioned with this play.
-    pub(crate) fn behind_play<'b>(&self, rows: &'b [Row], length_play_m: f64) -> CableRecord<'b>
-    where
-        'a: 'b,
-    {
-        CableRecord { rows, length_play_m, ..*self }
-    }
-
-    /// Returns its cycles, conditioned again with other limits.
-    pub(crate) fn conditioned(&self, limits: &SignalLimits) -> Vec<Row> {
-        let mut rows = Vec::with_capacity(self.rows.len());
-        for (_, log) in self.logs() {
-            let (mut state, mut last) = (SignalState::start(), BEFORE_FIRST);
-            for row in log {
-                let Conditioned { sensor_force_n, speed_m_per_s, length_m, sensor_finite, motion_finite, .. } =
-                    row.signals;
-                let known = |is_known: bool, value: f64| if is_known { value } else { f64::NAN };
-                let raw = RawSignals {
-                    sensor_force_n: known(sensor_finite, sensor_force_n),
-                    length_m: known(motion_finite, length_m),
-                    speed_m_per_s,
-                };
-                let signals = condition(limits, &mut state, &raw, row.cycle - last);
-                last = row.cycle;
-                rows.push(Row {
-                    signals: Conditioned { length_m: known(signals.length_m < UNKNOWN, signals.length_m), ..signals },
-                    ..*row
-                });
-            }
-        }
-        rows
-    }
-
-    /// Returns the time of a cycle, s since the first sample. Several logs follow one another.
-    #[must_use]
-    pub fn time_s(&self, cycle: usize) -> f64 {
-        let (past, last_s) = match self.times_s {
-            [] => (cycle, 0.0),
-            [.., last_s] => (cycle.saturating_sub(self.times_s.len() - 1), *last_s),
-        };
-        #[expect(clippy::cast_precision_loss, reason = "a count of cycles")]
-        let without_pause_s = last_s + past as f64 * self.cycle_s;
-        self.times_s.get(cycle).copied().unwrap_or(without_pause_s)
-    }
-
-    /// Returns the cycles of each log, with the index of the first.
-    pub fn logs(&self) -> impl Iterator<Item = (usize, &'a [Row])> {
-        let rows = self.rows;
-        let ends = self.starts.iter().skip(1).copied().chain([rows.len()]);
-        self.starts.iter().zip(ends).filter_map(move |(start, end)| Some((*start, rows.get(*start..end)?)))
-    }
 }

@@ -2,7 +2,8 @@
 
 use fric_core::parameters::{MU, SIGMA, Values};
 
-use super::record::{CableRecord, Row};
+use super::cable::CableRecord;
+use super::record::Row;
 
 /// Counts of used samples, and of samples left out by reason. Every sample is counted once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,11 +45,11 @@ const LEAST_WAY_RATIO: f64 = 1.25;
 const LEAST_RANGE_M: f64 = 3e-5;
 
 /// Returns the standing of each sample before anything is known about the friction. `has_reference` says whether a sample has a reference.
-pub fn first_look(record: &CableRecord<'_>, has_reference: impl Fn(usize, &Row) -> bool) -> Vec<Standing> {
+pub fn first_look(record: &CableRecord<'_>, has_reference: impl Fn(usize) -> bool) -> Vec<Standing> {
     let standing = |(place, row): (usize, &Row)| {
         if !row.is_sound() {
             Standing::Flagged
-        } else if has_reference(place, row) {
+        } else if has_reference(place) {
             Standing::Used
         } else {
             Standing::WithoutReference
@@ -60,8 +61,9 @@ pub fn first_look(record: &CableRecord<'_>, has_reference: impl Fn(usize, &Row) 
 /// Leaves out references that are bit-identical while the cable moves.
 pub fn leave_out_still_references(record: &CableRecord<'_>, standings: &mut [Standing]) {
     let mut start = 0;
-    for run in record.rows.chunk_by(|one, next| one.reference_n.to_bits() == next.reference_n.to_bits()) {
-        let travel_m: f64 = run.iter().map(|row| row.signals.displacement_m.abs()).sum();
+    for run in record.references_n.chunk_by(|one, next| one.to_bits() == next.to_bits()) {
+        let rows = record.rows.get(start..start + run.len()).unwrap_or_default();
+        let travel_m: f64 = rows.iter().map(|row| row.signals.displacement_m.abs()).sum();
         if run.len() >= STILL_COUNT && travel_m >= STILL_TRAVEL_M {
             let places = standings.iter_mut().skip(start).take(run.len());
             places.filter(|standing| **standing == Standing::Used).for_each(|s| *s = Standing::WithoutReference);

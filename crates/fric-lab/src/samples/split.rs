@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::record::CableRecord;
+use super::cable::CableRecord;
 
 /// Maximum number of blocks of a log, and their minimum duration, s.
 const MOST_BLOCKS: f64 = 48.0;

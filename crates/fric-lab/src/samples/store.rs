@@ -11,20 +11,22 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use fric_core::Sample;
 use fric_core::robot::RobotParams;
 use thiserror::Error;
 
-use super::record::{LogZero, Measurements, ROW_WIDTH, Reference, Row};
+use super::record::{LogZero, Measurements, ROW_WIDTH, Reference, Row, Samples};
 
 /// Size of the rows that stay in memory, bytes: a minute and three quarters of eight cables at 1 kHz.
 const MEMORY_BYTES: usize = 64 << 20;
 /// Cables are loaded together while their rows take up at most this multiple of what stays in memory. With 4, six minutes of eight cables at 1 kHz are
 /// worked on together, as in memory, and an hour's cables one by one. Twice as much would add 256 MB to the memory of logs between.
 const LOADED_RATIO: usize = 4;
-/// Size of a row in the file, bytes.
+/// Size of a row with its reference in memory, bytes.
+const SAMPLE_BYTES: usize = size_of::<Row>() + size_of::<f64>();
+/// Size of a row with its reference in the file, bytes.
 const ROW_BYTES: usize = ROW_WIDTH * size_of::<f64>();
 /// Number of rows that are read at once.
 const ROWS_AT_ONCE: usize = 4096;
@@ -93,8 +95,8 @@ impl<'a> SampleStore<'a> {
     /// [`StoreError`] if the samples no longer fit into memory and the temporary file cannot take them. The store is then of no further use.
     pub fn add(&mut self, sample: &Sample<'_>) -> Result<(), StoreError> {
         self.tail.add(sample);
-        let row_count: usize = self.tail.rows.iter().map(Vec::len).sum();
-        if row_count * size_of::<Row>() > self.memory_bytes && self.tail.reference() == Reference::Forces {
+        let row_count: usize = self.tail.samples.iter().map(|of_cable| of_cable.rows.len()).sum();
+        if row_count * SAMPLE_BYTES > self.memory_bytes && self.tail.reference() == Reference::Forces {
             self.move_to_file().map_err(StoreError::new)?;
         }
         Ok(())
@@ -108,15 +110,16 @@ impl<'a> SampleStore<'a> {
         // A cable may have been loaded meanwhile.
         let mut writer = BufWriter::with_capacity(ROWS_AT_ONCE * ROW_BYTES, file);
         writer.seek(SeekFrom::End(0))?;
-        for row in self.tail.rows.iter().flatten() {
-            for number in row.to_numbers(false) {
+        let all = self.tail.samples.iter().flat_map(|of_cable| of_cable.rows.iter().zip(of_cable.references_n.iter()));
+        for (row, reference_n) in all {
+            for number in row.to_numbers(*reference_n, false) {
                 writer.write_all(&number.to_le_bytes())?;
             }
         }
         let file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
         self.file = Some(Mutex::new(file));
-        self.blocks.push(self.tail.rows.first().map_or(0, Vec::len));
-        self.tail.rows.iter_mut().for_each(Vec::clear);
+        self.blocks.push(self.tail.samples.first().map_or(0, |of_cable| of_cable.rows.len()));
+        self.tail.samples.fill_with(Samples::default);
         Ok(())
     }
 
@@ -132,6 +135,11 @@ impl<'a> SampleStore<'a> {
         self.tail.reference()
     }
 
+    /// Returns the time of each sample, s since the first one.
+    pub(crate) fn times_s(&self) -> Arc<Vec<f64>> {
+        self.tail.times_s()
+    }
+
     /// Returns the start of each log, s. Several logs follow one another.
     #[must_use]
     pub fn log_starts_s(&self) -> Vec<f64> {
@@ -141,7 +149,7 @@ impl<'a> SampleStore<'a> {
     /// Returns the cables in groups that fit into memory together, in order: all of them, if the file is not needed.
     pub(crate) fn groups(&self) -> impl Iterator<Item = Range<usize>> + use<> {
         let cable_count = self.robot().cables().len();
-        let bytes = self.tail.len() * size_of::<Row>();
+        let bytes = self.tail.len() * SAMPLE_BYTES;
         let most = if self.file.is_some() { LOADED_RATIO * self.memory_bytes / bytes.max(1) } else { cable_count };
         // Groups of nearly the same size.
         let group_count = cable_count.div_ceil(most.max(1)).max(1);
@@ -155,8 +163,8 @@ impl<'a> SampleStore<'a> {
     pub fn load(&self, cables: Range<usize>) -> Result<Cow<'_, Measurements<'a>>, StoreError> {
         let Some(file) = &self.file else { return Ok(Cow::Borrowed(&self.tail)) };
         let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
-        let rows: io::Result<Vec<Vec<Row>>> = cables.clone().map(|cable| self.rows(&mut file, cable)).collect();
-        Ok(Cow::Owned(self.tail.holding(cables, rows.map_err(StoreError::new)?)))
+        let samples: io::Result<Vec<Samples>> = cables.clone().map(|cable| self.read(&mut file, cable)).collect();
+        Ok(Cow::Owned(self.tail.holding(cables, samples.map_err(StoreError::new)?)))
     }
 
     /// Returns the measurements with the rows of all cables in memory.
@@ -167,10 +175,10 @@ impl<'a> SampleStore<'a> {
         self.load(0..self.robot().cables().len())
     }
 
-    /// Reads the rows of a cable.
-    fn rows(&self, file: &mut File, cable: usize) -> io::Result<Vec<Row>> {
+    /// Reads the samples of a cable.
+    fn read(&self, file: &mut File, cable: usize) -> io::Result<Samples> {
         let cable_count = self.robot().cables().len();
-        let mut rows = Vec::with_capacity(self.tail.len());
+        let (mut rows, mut references_n) = (Vec::with_capacity(self.tail.len()), Vec::with_capacity(self.tail.len()));
         let mut bytes = Vec::with_capacity(ROWS_AT_ONCE * ROW_BYTES);
         let mut block_start = 0;
         for count in &self.blocks {
@@ -181,12 +189,19 @@ impl<'a> SampleStore<'a> {
                 file.read_exact(&mut bytes)?;
                 let (numbers, _) = bytes.as_chunks::<{ size_of::<f64>() }>();
                 let (of_rows, _) = numbers.as_chunks::<ROW_WIDTH>();
-                rows.extend(of_rows.iter().map(|row| Row::from_numbers(&row.map(f64::from_le_bytes)).0));
+                for row in of_rows {
+                    let (row, known_n, _) = Row::from_numbers(&row.map(f64::from_le_bytes));
+                    rows.push(row);
+                    references_n.push(known_n);
+                }
             }
             block_start += cable_count * count;
         }
-        rows.extend(self.tail.rows.get(cable).into_iter().flatten());
-        Ok(rows)
+        if let Some(tail) = self.tail.samples.get(cable) {
+            rows.extend_from_slice(&tail.rows);
+            references_n.extend_from_slice(&tail.references_n);
+        }
+        Ok(Samples { rows: Arc::new(rows), references_n: Arc::new(references_n) })
     }
 }
 

@@ -6,7 +6,8 @@ use fric_core::{CableCycle, CableGroup, CableParams, LANES, Lanes};
 
 use super::dual::Dual;
 use super::vector::Parameter;
-use crate::samples::record::{CableRecord, Row};
+use crate::samples::cable::CableRecord;
+use crate::samples::record::Row;
 
 /// Runs `$run::<N>`, where `N` is the number of derivatives that a lane carries in a pass over `$parts`. The compiler generates the whole cycle for each
 /// `N`.
@@ -52,6 +53,8 @@ impl Part<'_> {
     pub fn serves(&self, other: &Self) -> bool {
         let bits = |part: &Self| part.values.map(f64::to_bits);
         std::ptr::eq(self.record.rows, other.record.rows)
+            && self.record.added_noise.is_none()
+            && other.record.added_noise.is_none()
             && bits(self) == bits(other)
             && (other.free.is_empty() || self.free == other.free)
     }
@@ -151,8 +154,11 @@ impl<'a, const N: usize> LanePass<'a, N> {
 
     /// Runs the cycles `from..to` and appends the forces of each part to `forces`.
     pub fn advance(&mut self, from: usize, to: usize, forces: &mut [Forces]) {
-        let rows: Vec<&[Row]> =
-            self.parts.iter().map(|part| part.record.rows.get(from..to).unwrap_or_default()).collect();
+        let of_log = |part: &Part<'a>| part.record.rows.get(from..to).unwrap_or_default();
+        let with_noise = |part: &Part<'a>| part.record.added_noise.map(|noise| noise.on(of_log(part), from..to));
+        let with_noise: Vec<Option<Vec<Row>>> = self.parts.iter().map(with_noise).collect();
+        let parts = self.parts.iter().zip(&with_noise);
+        let rows: Vec<&[Row]> = parts.map(|(part, noisy)| noisy.as_deref().unwrap_or(of_log(part))).collect();
         let rows_of = |lanes: &[usize; LANES]| lanes.map(|part| rows.get(part).copied().unwrap_or_default());
         let rows: Vec<[&[Row]; LANES]> = self.lanes.iter().map(rows_of).collect();
         // The numbers of all groups, and 1.

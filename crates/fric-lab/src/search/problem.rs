@@ -17,12 +17,14 @@ use rayon::prelude::*;
 
 use super::gang::{Seat, all_forces, forces_of};
 use super::gram::Gram;
-use super::pass::{CandidatePass, Forces, LanePass, Part, with_width_for};
+use super::pass::{CandidatePass, Forces, Part};
+use super::stream::Stream;
 use super::vector::Parameter;
 use super::zeros::Zeros;
 use crate::certainty::groups::Groups;
 use crate::certainty::scores::Scores;
-use crate::samples::record::{CableRecord, LogZero, PerLog};
+use crate::samples::cable::CableRecord;
+use crate::samples::record::{LogZero, PerLog};
 
 /// Number of samples that are evaluated before they are assembled.
 const CHUNK: usize = 2048;
@@ -37,7 +39,7 @@ pub struct Member<'a> {
 
 impl<'a> Member<'a> {
     /// Returns the cable's part in a pass. The derivative with respect to a sensor's zero per log comes behind those of the free parameters.
-    fn part(&self, values: &Values, derivatives: bool) -> Part<'a> {
+    pub fn part(&self, values: &Values, derivatives: bool) -> Part<'a> {
         let mut free = if derivatives { self.free.clone() } else { Vec::new() };
         if derivatives && self.record.per_log.is_some_and(|per_log| per_log.zero == LogZero::Sensor) {
             free.extend(Parameter::all().filter(|parameter| parameter.place() == LogZero::Sensor.place()));
@@ -249,8 +251,8 @@ impl Problem<'_> {
         residuals.clear();
         match &self.comparison {
             Comparison::Forces => {
-                let rows = self.members.first().and_then(|member| member.record.rows.get(place));
-                residuals.extend(rows.zip(forces_n.first()).map(|(row, force_n)| force_n - row.reference_n));
+                let reference_n = self.members.first().and_then(|member| member.record.references_n.get(place));
+                residuals.extend(reference_n.zip(forces_n.first()).map(|(reference_n, force_n)| force_n - reference_n));
             }
             Comparison::Wrench { structure, outside, whitening } => {
                 let count = self.members.len();
@@ -286,19 +288,20 @@ struct Assembly {
 
 impl Assembly {
     /// Computes the rows of a sample from the forces of all cables and their derivatives; without derivatives, only the residuals.
-    fn assemble(&mut self, problem: &Problem<'_>, place: usize, forces: &[Forces], cycle: usize, derivatives: bool) {
+    fn assemble(&mut self, problem: &Problem<'_>, stream: &Stream<'_>, place: usize, derivatives: bool) {
         let Self { forces_n, residuals, levers, rows } = self;
         forces_n.clear();
-        forces_n.extend(forces.iter().map(|of_cable| of_cable.at(cycle).0));
+        forces_n.extend((0..problem.members.len()).map(|member| stream.at(member, place).0));
         problem.compare(place, forces_n, residuals);
         problem.levers(place, levers);
         rows.clear();
         for (component, residual) in residuals.iter().enumerate() {
             let (root, slope) = problem.loss.root(*residual);
             if derivatives {
-                for ((member, of_cable), lever) in problem.members.iter().zip(forces).zip(&*levers) {
+                for ((member, of), lever) in problem.members.iter().enumerate().zip(&*levers) {
                     let factor = slope * lever[component];
-                    rows.extend(of_cable.at(cycle).1.iter().take(member.free.len()).map(|part| factor * part));
+                    let derivatives = stream.at(member, place).1;
+                    rows.extend(derivatives.iter().take(of.free.len()).map(|part| factor * part));
                 }
             }
             rows.push(root);
@@ -343,7 +346,22 @@ impl<'a> Problem<'a> {
             self.visit_single(part, &forces, visit);
             return true;
         }
-        with_width_for!(&parts, visit_chunks(self, &parts, derivatives, visit))
+        self.visit_stream(parts, derivatives, visit)
+    }
+
+    /// Evaluates chunk by chunk, so that memory does not grow with the log.
+    fn visit_stream(&self, parts: Vec<Part<'a>>, derivatives: bool, mut visit: impl FnMut(usize, Rows<'_>)) -> bool {
+        let width = parts.iter().map(|part| part.free.len()).sum::<usize>() + 1;
+        let mut assembly = Assembly::default();
+        let mut stream = Stream::new(parts);
+        for (place, _) in self.used.iter().enumerate().filter(|(_, used)| **used) {
+            if stream.advance_to(place) && self.stopped() {
+                return false;
+            }
+            assembly.assemble(self, &stream, place, derivatives);
+            visit(place, assembly.rows.chunks_exact(width));
+        }
+        true
     }
 }
 
@@ -402,9 +420,9 @@ impl<'a> Problem<'a> {
         for (log, of_log) in zeros.logs.iter().enumerate() {
             for place in of_log.cycles.clone().filter(|place| self.used.get(*place).copied().unwrap_or(false)) {
                 let (force_n, gradient) = forces.at(place);
-                let Some(reference) = member.record.rows.get(place) else { continue };
+                let Some(reference_n) = member.record.references_n.get(place) else { continue };
                 let lever = zeros.lever(gradient);
-                let (root, slope) = self.loss.root(force_n + lever * of_log.change_n - reference.reference_n);
+                let (root, slope) = self.loss.root(force_n + lever * of_log.change_n - reference_n);
                 row.fill(0.0);
                 for ((entry, part), by_free) in
                     row.iter_mut().zip(gradient.iter().take(free_count)).zip(&of_log.by_free)
@@ -422,27 +440,28 @@ impl<'a> Problem<'a> {
         true
     }
 
-    /// Removes from a signal of every cycle what zeros of the logs could make up for, over the samples that count.
-    pub fn without_zeros(&self, values: &Values, signal: &mut [f64]) {
-        let Some((zeros, forces)) = self.per_log().and_then(|per_log| self.zeros(per_log, values, false)) else {
-            return;
-        };
-        for of_log in &zeros.logs {
-            let (mut products, mut squares) = (0.0, 0.0);
-            let counts = |cycle: &usize| self.used.get(*cycle).copied().unwrap_or(false);
-            for cycle in of_log.cycles.clone().filter(counts) {
-                let lever = zeros.lever(forces.at(cycle).1);
-                if let Some(number) = signal.get(cycle).filter(|number| number.is_finite()) {
-                    products += lever * number;
-                    squares += lever * lever;
-                }
-            }
-            for (cycle, number) in of_log.cycles.clone().zip(signal.iter_mut().skip(of_log.cycles.start)) {
-                if squares > 0.0 {
-                    *number -= zeros.lever(forces.at(cycle).1) * products / squares;
-                }
-            }
-        }
+    /// Returns by how much the force changes in every cycle with the zero of its log; `None` if all logs have the same.
+    pub fn zero_levers(&self, values: &Values) -> Option<ZeroLevers> {
+        let (zeros, forces) = self.zeros(self.per_log()?, values, false)?;
+        Some(ZeroLevers { zeros, forces })
+    }
+}
+
+/// By how much the force changes in every cycle with the zero of its log.
+pub struct ZeroLevers {
+    zeros: Zeros,
+    forces: Arc<Forces>,
+}
+
+impl ZeroLevers {
+    /// Returns the cycles of each log.
+    pub fn logs(&self) -> impl Iterator<Item = Range<usize>> {
+        self.zeros.logs.iter().map(|of_log| of_log.cycles.clone())
+    }
+
+    /// Returns the lever in a cycle.
+    pub fn at(&self, cycle: usize) -> f64 {
+        self.zeros.lever(self.forces.at(cycle).1)
     }
 }
 
@@ -450,9 +469,10 @@ impl Problem<'_> {
     /// Evaluates a single cable from available forces, which already form nearly complete rows.
     fn visit_single(&self, part: &Part<'_>, forces: &Forces, mut visit: impl FnMut(usize, Rows<'_>)) {
         let mut of_sample = vec![0.0; part.free.len() + 1];
-        for (place, (row, _)) in part.record.rows.iter().zip(&self.used).enumerate().filter(|(_, (_, used))| **used) {
+        let references_n = part.record.references_n.iter().zip(&self.used).enumerate();
+        for (place, (reference_n, _)) in references_n.filter(|(_, (_, used))| **used) {
             let (force_n, gradient) = forces.at(place);
-            let (root, slope) = self.loss.root(force_n - row.reference_n);
+            let (root, slope) = self.loss.root(force_n - reference_n);
             for (entry, part) in of_sample.iter_mut().zip(gradient) {
                 *entry = slope * part;
             }
@@ -460,43 +480,4 @@ impl Problem<'_> {
             visit(place, of_sample.chunks_exact(of_sample.len()));
         }
     }
-}
-
-/// Evaluates chunk by chunk, so that memory does not grow with the log.
-fn visit_chunks<const N: usize>(
-    problem: &Problem<'_>,
-    parts: &[Part<'_>],
-    derivatives: bool,
-    mut visit: impl FnMut(usize, Rows<'_>),
-) -> bool {
-    let Some(first) = parts.first() else { return true };
-    let width = parts.iter().map(|part| part.free.len()).sum::<usize>() + 1;
-    let mut assembly = Assembly::default();
-    let mut passes: Vec<LanePass<'_, N>> =
-        parts.chunks(LANES).map(|parts| LanePass::new(parts.iter().cloned())).collect();
-    let mut forces = vec![Forces::default(); parts.len()];
-    for (start, log) in first.record.logs() {
-        passes.iter_mut().for_each(LanePass::rest);
-        let end = start + log.len();
-        for from in (start..end).step_by(CHUNK) {
-            if problem.stopped() {
-                return false;
-            }
-            let to = (from + CHUNK).min(end);
-            for (forces, part) in forces.iter_mut().zip(parts) {
-                forces.clear(part.free.len(), CHUNK);
-            }
-            passes
-                .par_iter_mut()
-                .zip(forces.par_chunks_mut(LANES))
-                .for_each(|(pass, forces)| pass.advance(from, to, forces));
-            for (cycle, place) in (from..to).enumerate() {
-                if problem.used.get(place).copied().unwrap_or(false) {
-                    assembly.assemble(problem, place, &forces, cycle, derivatives);
-                    visit(place, assembly.rows.chunks_exact(width));
-                }
-            }
-        }
-    }
-    true
 }

@@ -16,7 +16,8 @@ use std::ops::Range;
 
 use super::pass::Forces;
 use super::problem::Loss;
-use crate::samples::record::{CableRecord, LogZero};
+use crate::samples::cable::CableRecord;
+use crate::samples::record::LogZero;
 
 /// Maximum number of Newton steps with Huber's loss, which is piecewise quadratic: each step but the last moves samples across the bound.
 const MOST_STEPS: usize = 32;
@@ -65,10 +66,7 @@ impl Zeros {
     /// Returns the derivative of a force with respect to the zero, from its derivatives.
     #[inline]
     pub fn lever(&self, gradient: &[f64]) -> f64 {
-        match self.zero {
-            LogZero::Platform => 1.0,
-            LogZero::Sensor => gradient.get(self.free_count).copied().unwrap_or(0.0),
-        }
+        self.zero.lever(gradient.get(self.free_count..).unwrap_or_default())
     }
 
     fn of_log(
@@ -82,7 +80,7 @@ impl Zeros {
             let counts = |cycle: &usize| used.get(*cycle).copied().unwrap_or(false);
             cycles.clone().filter(counts).filter_map(|cycle| {
                 let (force_n, gradient) = forces.at(cycle);
-                Some((force_n - record.rows.get(cycle)?.reference_n, self.lever(gradient), gradient))
+                Some((force_n - record.references_n.get(cycle)?, self.lever(gradient), gradient))
             })
         };
         let bound_n = match loss {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use fric_core::robot::file::RobotFile;
 use fric_lab::discover::{CorrectedFit, corrections, fit_cables_corrected};
-use fric_lab::fit::{FitOptions, LogZero, Progress, Reference, Row, SampleStore, fit_cables, residuals_n};
+use fric_lab::fit::{CableRecord, FitOptions, LogZero, Progress, Reference, Row, SampleStore, fit_cables, residuals_n};
 use fric_lab::simulate::SimulationOptions;
 
 use super::logs::{Log, mini_ipanema};
@@ -51,8 +51,8 @@ fn stored<'a>(logs: &[Log], robot: &'a RobotFile, memory_bytes: usize) -> Sample
 }
 
 /// Every number and every fact of a row.
-fn bits(row: &Row) -> ([u64; 8], [bool; 5]) {
-    let Row { signals, pose_wrap, reference_n, pose_fault, cycle } = row;
+fn bits((row, reference_n): (&Row, &f64)) -> ([u64; 8], [bool; 5]) {
+    let Row { signals, pose_wrap, pose_fault, cycle } = row;
     let numbers = [
         signals.sensor_force_n,
         signals.displacement_m,
@@ -87,13 +87,15 @@ fn rows_come_back_with_the_same_bits() {
                     continue;
                 };
                 let given = memory.cable(cable).unwrap();
-                assert!(found.rows.iter().map(bits).eq(given.rows.iter().map(bits)), "cable {cable}");
+                let bits_of = |of: CableRecord<'_>| of.rows.iter().zip(of.references_n).map(bits).collect::<Vec<_>>();
+                assert_eq!(bits_of(found), bits_of(given), "cable {cable}");
                 assert_eq!(found.logs().map(|(start, _)| start).collect::<Vec<usize>>(), [0, 3_000]);
                 assert_eq!(found.time_s(5_099).to_bits(), given.time_s(5_099).to_bits());
             }
         }
     }
-    let all: Vec<[bool; 5]> = memory.cables().flat_map(|cable| cable.rows.iter().map(|row| bits(row).1)).collect();
+    let all: Vec<[bool; 5]> =
+        memory.cables().flat_map(|cable| cable.rows.iter().map(|row| bits((row, &0.0)).1)).collect();
     for fact in [0, 2, 3, 4] {
         assert!([true, false].iter().all(|value| all.iter().any(|facts| facts[fact] == *value)), "fact {fact}");
     }

@@ -89,7 +89,7 @@ pub fn discover(
     let shown = results::shown(py, result.summary(), &result, page, discovery::table(&result), &provenance)?;
     let cable = |(found, result): (&CableDiscovery, &DiscoverCableResult)| {
         let words: Vec<String> = result.places.iter().map(WhereResult::range_in_words).collect();
-        let arrays = [&found.times_s, &found.residual_before_n, &found.residual_after_n]
+        let arrays = [&*found.times_s, &found.residual_before_n, &found.residual_after_n]
             .map(|numbers| fixed(py, numbers.clone()));
         let [time_s, before_n, after_n] = arrays;
         (words, time_s, before_n, after_n)

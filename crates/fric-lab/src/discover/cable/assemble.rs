@@ -1,5 +1,7 @@
 //! What a discovery on one cable returns, put together from the outcome of its passes.
 
+use std::sync::Arc;
+
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 
@@ -145,7 +147,7 @@ impl CableLog<'_> {
             unexplained,
             lack: None,
             profiles: profiles.collect(),
-            times_s: (0..self.record.rows.len()).map(|cycle| self.record.time_s(cycle)).collect(),
+            times_s: Arc::default(),
             residual_before_n,
             residual_after_n,
         }

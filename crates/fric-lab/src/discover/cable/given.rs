@@ -8,7 +8,7 @@ use crate::discover::faults::{RecordingFault, faulty_stretches, leave_out};
 use crate::discover::readiness::lack_of;
 use crate::discover::report::{CableDiscovery, Model};
 use crate::discover::workbench::{self, Workbench};
-use crate::fit::{CableRecord, FitOptions, Parameter};
+use crate::fit::{CableRecord, FitOptions, Parameter, Row};
 use crate::replay::Deviation;
 use crate::samples::split::split;
 
@@ -34,14 +34,14 @@ pub fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool
     Some((crate::fit::cables::used(&paper.standings), start))
 }
 
-/// Adds a fault that was corrected for the whole log. The given model is the one without the correction.
-pub fn add_corrected_fault(
+/// Adds faults that were corrected for the whole log, the last one first. The given model is the one without the corrections.
+pub fn add_corrected_faults(
     found: &mut CableDiscovery,
     given: &CableRecord<'_>,
-    fault: RecordingFault,
+    faults: &[RecordingFault],
     stop: &AtomicBool,
 ) {
-    found.faults.insert(0, fault);
+    found.faults.splice(0..0, faults.iter().rev().cloned());
     let Some((counts, start)) = given_to(given, stop) else { return };
     let (blocks, measured) = (split(given), crate::samples::interpolated::measured(given));
     let bench = Workbench { record: *given, blocks: &blocks, counts: &counts, measured: &measured, stop };
@@ -97,5 +97,5 @@ pub fn acts(parameter: &Parameter, values: &Values) -> bool {
 }
 
 pub(super) fn has_reference(record: &CableRecord<'_>, place: usize) -> bool {
-    record.rows.get(place).is_some_and(|row| row.is_sound() && row.reference_n.is_finite())
+    record.rows.get(place).is_some_and(Row::is_sound) && record.reference_n(place).is_finite()
 }

@@ -20,12 +20,12 @@ use crate::discover::rest::places::Excess;
 use crate::discover::workbench::{self, Trial, Workbench};
 use crate::discover::{Task, rest};
 use crate::effects::Around;
-use crate::fit::{CableRecord, FitOptions, Row, StoreError};
+use crate::fit::{CableRecord, FitOptions, StoreError};
 use crate::samples::conditions::{Condition, conditions, load, time};
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
 
-pub use given::{acts, add_corrected_fault, given_to, held_out_squares};
+pub use given::{acts, add_corrected_faults, given_to, held_out_squares};
 
 /// The steps of a converter are reported if rounding makes at least this fraction of the noise variance.
 const LEAST_ROUNDING: f64 = 0.1;
@@ -50,20 +50,22 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     let mut standings = crate::fit::cables::prepared(record);
     leave_out(&stretches, record.interval_s, &mut standings);
     let gang = crate::search::gang::Gang::new(1, stop);
-    let paper = crate::fit::cables::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
+    // Its forces, which would stay with its problem, are of no further use.
+    let crate::fit::cables::Search { solution, standings: found, .. } =
+        crate::fit::cables::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
     task.stages.finish_one();
-    let samples = crate::samples::selection::count(&paper.standings);
+    let samples = crate::samples::selection::count(&found);
     if let Some(lack) = lack_of_samples(&samples, record.interval_s) {
         return Ok(CableDiscovery::untold(record, samples, lack));
     }
-    let counts = crate::fit::cables::used(&paper.standings);
+    let counts = crate::fit::cables::used(&found);
     let blocks = split(record);
     let conditions = conditions(record);
     // The sensor force and its rate contain the residual. No effect would appear steady over them.
     let without_residual =
         conditions.iter().filter(|condition| !["sensor_force", "force_rate"].contains(&condition.signal));
-    let steady: Vec<Condition> = without_residual.cloned().chain([load(record), time(record)]).collect();
-    let (mut start, held) = given_model(record, &paper.solution);
+    let steady: Vec<Condition<'_>> = without_residual.cloned().chain([load(record), time(record)]).collect();
+    let (mut start, held) = given_model(record, &solution);
 
     let measured = crate::samples::interpolated::measured(record);
     let times = Times::of(record);
@@ -84,8 +86,8 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     };
     let search = |heard: &Oscillations, start: &mut workbench::Model| {
         // An oscillation of the sensor is not friction, so it is subtracted from the reference first.
-        let rows = heard.taken_off(record, &times);
-        raw.with_rows(&rows).passes(start, &held)
+        let references_n = heard.taken_off(record, &times);
+        raw.with_references(&references_n).passes(start, &held)
     };
     let signals = motion_and_load(record);
     let mut heard = Oscillations::lines_of(&left_by(&bench.try_one(&start).values), &times, &signals);
@@ -109,7 +111,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
         faults = heard.faults();
     }
     task.stages.finish_one();
-    let rows = heard.taken_off(record, &times);
+    let references_n = heard.taken_off(record, &times);
     faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));
     let step_n = coarse_step_n(record).filter(|step_n| {
         // Rounding noise is uniform within ± half a step.
@@ -122,9 +124,10 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
         intervals_s: Vec::new(),
     };
     faults.extend(step_n.map(coarse));
-    let case = raw.with_rows(&rows);
+    let case = raw.with_references(&references_n);
     let table = if task.options.empirical { case.table(&outcome, task)? } else { None };
     let mut found = case.report(&outcome, table.as_ref(), samples, faults);
+    found.times_s = task.all.samples.times_s();
     found.per_log = case.log_values(&outcome, &found.after);
     found.add_to_zeros(&[]);
     Ok(found)
@@ -143,19 +146,19 @@ struct CableLog<'a> {
     /// The status of each sample before anything was known about the friction.
     standings: &'a [Standing],
     measured: &'a [bool],
-    conditions: &'a [Condition],
+    conditions: &'a [Condition<'a>],
     /// The conditions over which an effect has one size.
-    steady: &'a [Condition],
+    steady: &'a [Condition<'a>],
     stop: &'a AtomicBool,
 }
 
 impl<'a> CableLog<'a> {
-    /// Returns the same log with other signals.
-    fn with_rows<'b>(&self, rows: &'b [Row]) -> CableLog<'b>
+    /// Returns the same log with other references.
+    fn with_references<'b>(&self, references_n: &'b [f64]) -> CableLog<'b>
     where
         'a: 'b,
     {
-        CableLog { record: self.raw.with_signals(rows), ..*self }
+        CableLog { record: self.raw.with_references(references_n), ..*self }
     }
 
     fn bench<'b>(&self, counts: &'b [bool]) -> Workbench<'b>

@@ -10,7 +10,7 @@ use super::RecordingFault;
 use super::length_noise::{self, LengthNoise};
 use super::timing;
 use crate::fit::{
-    CableFit, CableRecord, FitOptions, Measurements, Progress, Row, SampleStore, StoreError, fit_cables, residuals_n,
+    CableFit, CableRecord, FitOptions, Measurements, Progress, SampleStore, StoreError, fit_cables, residuals_n,
 };
 use crate::samples::noise::white_noise;
 
@@ -43,20 +43,15 @@ pub fn corrections(samples: &SampleStore<'_>, progress: &Progress) -> Result<Cor
     let noise = LengthNoise::of(samples, progress.stop_flag())?;
     let mut cables = Vec::new();
     for group in samples.groups() {
-        let measurements = samples.load(group)?;
-        let given: Vec<CableRecord<'_>> = measurements.cables().collect();
-        let steadied = noise.as_ref().map(|noise| noise.steadied(&given));
-        let records = length_noise::records(&given, noise.as_ref().zip(steadied.as_deref()));
+        let measurements = length_noise::steadied(samples.load(group)?, noise.as_ref());
+        let records: Vec<CableRecord<'_>> = measurements.cables().collect();
         let of_cable = |(place, record): (usize, &CableRecord<'_>)| {
             let of_length =
                 noise.as_ref().and_then(|noise| noise.faults.get(measurements.held().start + place)?.clone());
             let late = timing::retimed(record, progress.stop_flag());
             progress.finish_one();
-            let (rows, late) = late.unzip();
-            CableCorrection {
-                faults: late.into_iter().chain(of_length).collect(),
-                references_n: rows.map(|rows| rows.iter().map(|row| row.reference_n).collect()),
-            }
+            let (references_n, late) = late.unzip();
+            CableCorrection { faults: late.into_iter().chain(of_length).collect(), references_n }
         };
         cables.par_extend(records.par_iter().enumerate().map(of_cable));
     }
@@ -132,7 +127,7 @@ fn fit_group(
     let cables = fit_cables(measurements, options, progress);
     let left_n = residuals_n(measurements, &cables);
     let stop = progress.stop_flag();
-    let retimed = |(cable, (fit, left_n)): (usize, (&CableFit, &Vec<f64>))| -> Option<(Vec<Row>, RecordingFault)> {
+    let retimed = |(cable, (fit, left_n)): (usize, (&CableFit, &Vec<f64>))| -> Option<(Vec<f64>, RecordingFault)> {
         let record = measurements.cable(measurements.held().start + cable)?;
         if !timing::may_be_off(&record, left_n) {
             return None;
@@ -144,8 +139,8 @@ fn fit_group(
     if found.iter().all(Option::is_none) {
         return (CorrectedFit { faults: vec![Vec::new(); cables.len()], cables }, left_n);
     }
-    let (rows, faults): (Vec<_>, Vec<_>) = found.into_iter().map(Option::unzip).unzip();
-    let corrected = measurements.with_rows(rows);
+    let (references_n, faults): (Vec<_>, Vec<_>) = found.into_iter().map(Option::unzip).unzip();
+    let corrected = measurements.with_references(references_n);
     let again = fit_cables(&corrected, options, progress);
     let mut all = (CorrectedFit::default(), Vec::new());
     let first = cables.into_iter().zip(left_n);

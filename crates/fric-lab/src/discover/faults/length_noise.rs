@@ -5,6 +5,7 @@
 //! side suppresses white noise of the standard deviation σ best. The noise is a recording fault if the model with this play agrees better with the
 //! log than without it, on samples that neither was fitted to.
 
+use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
 
 use fric_core::signals::SignalLimits;
@@ -12,8 +13,8 @@ use rayon::prelude::*;
 
 use super::{Fault, RecordingFault};
 use crate::discover::cable::held_out_squares;
-use crate::fit::{CableRecord, Row, SampleStore, StoreError};
-use crate::samples::record::PLAY_OF_NOISE;
+use crate::fit::{CableRecord, Measurements, SampleStore, StoreError};
+use crate::samples::cable::PLAY_OF_NOISE;
 
 /// Minimum relative decrease of the sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
 const LEAST_GAIN: f64 = 0.005;
@@ -27,16 +28,11 @@ pub struct LengthNoise {
     pub faults: Vec<Option<RecordingFault>>,
 }
 
-/// Returns the records without the noise of their lengths where it matters, from that noise and the rows without it.
-pub fn records<'a>(
-    given: &[CableRecord<'a>],
-    steadied: Option<(&LengthNoise, &'a [Vec<Row>])>,
-) -> Vec<CableRecord<'a>> {
-    match steadied {
-        Some((noise, rows)) => {
-            given.iter().zip(rows).map(|(given, rows)| given.behind_play(rows, noise.length_play_m)).collect()
-        }
-        None => given.to_vec(),
+/// Returns measurements without the noise of their lengths where it matters.
+pub fn steadied<'m, 'a>(given: Cow<'m, Measurements<'a>>, noise: Option<&LengthNoise>) -> Cow<'m, Measurements<'a>> {
+    match noise {
+        Some(noise) => Cow::Owned(given.conditioned(&noise.limits)),
+        None => given,
     }
 }
 
@@ -65,11 +61,6 @@ impl LengthNoise {
         };
         let faults = noise_m.into_iter().map(fault).collect();
         Ok(Some(Self { limits: SignalLimits { length_noise_m, ..limits }, length_play_m: length_noise_m, faults }))
-    }
-
-    /// Returns the rows of some cables without the noise of their lengths.
-    pub fn steadied(&self, given: &[CableRecord<'_>]) -> Vec<Vec<Row>> {
-        given.iter().map(|record| record.conditioned(&self.limits)).collect()
     }
 }
 

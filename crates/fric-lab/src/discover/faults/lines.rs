@@ -71,7 +71,7 @@ impl Line {
 }
 
 /// Returns the lines of a residual that are unrelated to motion and load, the strongest first. The residual is NaN where there is no sample.
-pub fn lines(residual: &[f64], times: &Times, signals: &[Together]) -> Vec<Line> {
+pub fn lines(residual: &[f64], times: &Times, signals: &[Together<'_>]) -> Vec<Line> {
     let mut rest = residual.to_vec();
     let mut lines = Vec::new();
     while lines.len() < MOST_LINES {
@@ -169,6 +169,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     use super::*;
+    use crate::discover::faults::spectrum::Signal;
 
     fn noise(seed: u64) -> Vec<f64> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -231,11 +232,15 @@ mod tests {
         }
         let of_log = times(residual.len());
         assert_eq!(lines(&residual, &of_log, &[]).len(), 2);
-        let found = lines(&residual, &of_log, &[vec![motion.clone()]]);
+        let signal = |numbers: &[f64]| -> Signal<'static> {
+            let numbers = numbers.to_vec();
+            Box::new(move |row| numbers[row])
+        };
+        let found = lines(&residual, &of_log, &[vec![signal(&motion)]]);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.0).abs() < 1e-2);
         // A line in one sensor alone may be that sensor's own hum.
-        assert_eq!(lines(&residual, &of_log, &[vec![motion, noise(6)]]).len(), 2);
+        assert_eq!(lines(&residual, &of_log, &[vec![signal(&motion), signal(&noise(6))]]).len(), 2);
     }
 
     #[test]

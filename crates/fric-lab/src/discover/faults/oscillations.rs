@@ -20,12 +20,12 @@ pub struct Oscillations {
 
 impl Oscillations {
     /// The lines of a residual, N, NaN where there is no sample.
-    pub fn lines_of(residual_n: &[f64], times: &Times, signals: &[Together]) -> Self {
+    pub fn lines_of(residual_n: &[f64], times: &Times, signals: &[Together<'_>]) -> Self {
         Self { lines: lines(residual_n, times, signals), vibration: None }
     }
 
     /// The lines and the vibration of a residual, N, NaN where there is no sample. Where there is a vibration, lines within its peak are parts of it.
-    pub fn of(residual_n: &[f64], times: &Times, record: &CableRecord<'_>, signals: &[Together]) -> Self {
+    pub fn of(residual_n: &[f64], times: &Times, record: &CableRecord<'_>, signals: &[Together<'_>]) -> Self {
         let all = Self::lines_of(residual_n, times, signals);
         let humming = steady(&all.lines, residual_n, times);
         let mut rest = residual_n.to_vec();
@@ -63,18 +63,18 @@ impl Oscillations {
         vibrations && self.lines.len() == other.lines.len() && self.lines.iter().all(is_in)
     }
 
-    /// A record's rows with all of it taken off the reference: the residual is what the model says less the reference.
-    pub fn taken_off<'a>(&self, record: &CableRecord<'a>, times: &Times) -> Cow<'a, [Row]> {
+    /// A record's references with all of it taken off: the residual is what the model says less the reference.
+    pub fn taken_off<'a>(&self, record: &CableRecord<'a>, times: &Times) -> Cow<'a, [f64]> {
         if self.lines.is_empty() && self.vibration.is_none() {
-            return Cow::Borrowed(record.rows);
+            return Cow::Borrowed(record.references_n);
         }
-        let mut rows = record.rows.to_vec();
+        let mut references_n = record.references_n.to_vec();
         for line in &self.lines {
-            line.add_to(rows.iter_mut().map(|row| &mut row.reference_n), 1.0, times);
+            line.add_to(references_n.iter_mut(), 1.0, times);
         }
         let shown_n = self.vibration.iter().flat_map(|(_, shown_n)| shown_n);
-        rows.iter_mut().zip(shown_n).for_each(|(row, shown_n)| row.reference_n += shown_n);
-        Cow::Owned(rows)
+        references_n.iter_mut().zip(shown_n).for_each(|(reference_n, shown_n)| *reference_n += shown_n);
+        Cow::Owned(references_n)
     }
 
     /// The faults of the recording that they are.

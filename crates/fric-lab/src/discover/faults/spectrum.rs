@@ -168,14 +168,19 @@ impl Spectrum {
     }
 }
 
+/// A signal by the row.
+pub type Signal<'a> = Box<dyn Fn(usize) -> f64 + 'a>;
+
 /// Signals that only together tell a line: each may hum by itself.
-pub type Together = Vec<Vec<f64>>;
+pub type Together<'a> = Vec<Signal<'a>>;
 
 /// Whether any of the signals has a line at a frequency, for each of some.
-pub fn have_line(frequencies_hz: &[f64], signals: &[Together], times: &Times) -> Vec<bool> {
-    let spectra_of =
-        |of: &Together| of.iter().filter_map(|signal| Spectrum::of(signal, times)).collect::<Vec<Spectrum>>();
-    let spectra: Vec<Vec<Spectrum>> = signals.iter().map(spectra_of).collect();
+pub fn have_line(frequencies_hz: &[f64], signals: &[Together<'_>], times: &Times) -> Vec<bool> {
+    let spectrum_of = |signal: &Signal<'_>| {
+        let numbers: Vec<f64> = (0..times.places.len()).map(signal).collect();
+        Spectrum::of(&numbers, times)
+    };
+    let spectra: Vec<Vec<Spectrum>> = signals.iter().map(|of| of.iter().filter_map(spectrum_of).collect()).collect();
     let has = |frequency_hz: &f64| {
         spectra.iter().any(|of| !of.is_empty() && of.iter().all(|spectrum| spectrum.has_line(*frequency_hz, times)))
     };
@@ -184,17 +189,19 @@ pub fn have_line(frequencies_hz: &[f64], signals: &[Together], times: &Times) ->
 
 /// What a cable does and bears: the motion, with the harmonics that a law of friction makes of a periodic one, and the load as both of its sensors
 /// see it.
-pub fn motion_and_load(record: &CableRecord<'_>) -> Vec<Together> {
-    let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
-    let speed_m_per_s = of(&|row| row.signals.speed_m_per_s);
-    let change = |pair: &[f64]| pair[1] - pair[0];
-    let acceleration = std::iter::once(0.0).chain(speed_m_per_s.windows(2).map(change)).collect();
+pub fn motion_and_load<'a>(record: &CableRecord<'a>) -> Vec<Together<'a>> {
+    let (rows, load_n) = (record.rows, record.references_n);
+    let of = |value: fn(&Row) -> f64| -> Signal<'a> { Box::new(move |row| rows.get(row).map_or(f64::NAN, value)) };
+    let speed_m_per_s = move |row: usize| rows.get(row).map_or(f64::NAN, |row| row.signals.speed_m_per_s);
+    let acceleration =
+        move |row: usize| row.checked_sub(1).map_or(0.0, |before| speed_m_per_s(row) - speed_m_per_s(before));
+    let at_platform_n = move |row: usize| load_n.get(row).copied().unwrap_or(f64::NAN);
     vec![
-        vec![of(&|row| row.signals.displacement_m)],
-        vec![of(&|row| row.signals.displacement_m.abs())],
-        vec![of(&|row| sign(row.signals.displacement_m))],
-        vec![speed_m_per_s],
-        vec![acceleration],
-        vec![of(&|row| row.signals.sensor_force_n), of(&|row| row.reference_n)],
+        vec![of(|row| row.signals.displacement_m)],
+        vec![of(|row| row.signals.displacement_m.abs())],
+        vec![of(|row| sign(row.signals.displacement_m))],
+        vec![Box::new(speed_m_per_s)],
+        vec![Box::new(acceleration)],
+        vec![of(|row| row.signals.sensor_force_n), Box::new(at_platform_n)],
     ]
 }

@@ -8,15 +8,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use nalgebra::{DMatrix, DVector};
-
 use super::{Fault, RecordingFault};
 use crate::discover::cable::given_to;
 use crate::discover::naming::STRONG_BIC;
-use crate::discover::naming::evidence::{delta_bic, inflations};
-use crate::discover::naming::projection::less_projection;
+use crate::discover::naming::evidence::delta_bic;
+use crate::discover::naming::projection::{Columns, Signals, visit_less_projection};
 use crate::discover::workbench::{Model, Trial, Workbench};
-use crate::fit::{CableRecord, Row};
+use crate::fit::CableRecord;
 use crate::samples::interpolated::measured;
 use crate::samples::split::{Block, split};
 
@@ -53,20 +51,20 @@ struct Step {
     /// Decrease of the sum of squares, N², and as a fraction of what the model's parameters cannot compensate.
     gain: f64,
     gain_ratio: f64,
-    /// Factor by which memory in what the step leaves weakens the evidence, at least 1.
-    inflation: f64,
+    /// Of the rate of the reference, and its product with the time, beside the residual.
+    columns: Columns,
 }
 
 /// The result of correcting one kind of shift.
 struct Corrected {
     shift: Shift,
-    rows: Vec<Row>,
+    references_n: Vec<f64>,
     trial: Trial,
 }
 
-/// Returns the cable's cycles with the reference at its correct time, and the fault to report. Returns `None` if the time is right or cannot be
+/// Returns the cable's references at their correct times, and the fault to report. Returns `None` if the time is right or cannot be
 /// determined, for instance with a model without friction.
-pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>, RecordingFault)> {
+pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<f64>, RecordingFault)> {
     // A model without friction leaves all of the friction in the residual, which has rates of its own.
     if record.reference_is_known || record.params.friction().mu <= 0.0 {
         return None;
@@ -74,21 +72,22 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>,
     let (counts, start) = given_to(record, stop)?;
     let (blocks, measured) = (split(record), measured(record));
     let case = Case { record: *record, counts: &counts, blocks: &blocks, measured: &measured, stop };
-    let as_it_is = case.bench(record.rows).try_one(&start);
-    let first = case.improvement(record.rows, &as_it_is, true)?;
+    let as_it_is = case.bench(record.references_n).try_one(&start);
+    let first = case.improvement(record.references_n, &as_it_is, true)?;
     if first.gain < LEAST_GAIN * as_it_is.training {
         return None;
     }
     // The evidence is that of the first steps. A value interpolated between two samples has less noise than either, so that any shift by a fraction of
     // an interval makes the sum of squares smaller. The memory is that of what the whole shift leaves.
-    let is_strong = |first: &Step, left: &Step, parameters: f64| {
+    let is_strong = |first: &Step, corrected: &Corrected, with_skew: bool| {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = case.bench(record.rows).count(false) as f64 / left.inflation;
-        delta_bic(count, 1.0 - first.gain_ratio, parameters) < -STRONG_BIC
+        let count = case.bench(record.references_n).count(false) as f64 / case.inflation(corrected, with_skew)?;
+        let parameters = if with_skew { 2.0 } else { 1.0 };
+        Some(delta_bic(count, 1.0 - first.gain_ratio, parameters) < -STRONG_BIC)
     };
     let late = case.corrected(&as_it_is, false)?;
     // For the same reason a skew looks better than none, so the rest after the delay must still be correlated with the rate.
-    let more = case.improvement(&late.rows, &late.trial, true)?;
+    let more = case.improvement(&late.references_n, &late.trial, true)?;
     let may_be_skewed = more.gain >= LEAST_GAIN * late.trial.training;
     let skewed = if may_be_skewed { Some(case.corrected(&as_it_is, true)?) } else { None };
     let gains = |from: &Trial, to: &Trial| to.held_out < (1.0 - LEAST_GAIN) * from.held_out;
@@ -96,22 +95,21 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<Row>,
     let skewed = skewed.filter(|skewed| skewed.shift.skew.abs() <= MOST_SKEW);
     let skewed = skewed.filter(|skewed| gains(&late.trial, &skewed.trial) && gains(&as_it_is, &skewed.trial));
     if let Some(skewed) = skewed
-        && is_strong(&first, &case.improvement(&skewed.rows, &skewed.trial, true)?, 2.0)
+        && is_strong(&first, &skewed, true)?
     {
         let Shift { delay_s, skew } = skewed.shift;
-        return Some((skewed.rows, fault(Fault::ClockSkew, vec![("skew_ratio", -skew), ("delay_s", delay_s)])));
+        return Some((skewed.references_n, fault(Fault::ClockSkew, vec![("skew_ratio", -skew), ("delay_s", delay_s)])));
     }
     let delay_s = late.shift.delay_s;
-    let [first, left] =
-        [(record.rows, &as_it_is), (&late.rows, &late.trial)].map(|(rows, trial)| case.improvement(rows, trial, false));
-    let is_late = delay_s > 0.0 && gains(&as_it_is, &late.trial) && is_strong(&first?, &left?, 1.0);
-    is_late.then(|| (late.rows, fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)])))
+    let first = case.improvement(record.references_n, &as_it_is, false)?;
+    let is_late = delay_s > 0.0 && gains(&as_it_is, &late.trial) && is_strong(&first, &late, false)?;
+    is_late.then(|| (late.references_n, fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)])))
 }
 
 /// Whether a fit's residual, N, is correlated with the rate of the reference at all, constantly or growing with time. This check is far cheaper than
 /// [`retimed`].
 pub fn may_be_off(record: &CableRecord<'_>, left_n: &[f64]) -> bool {
-    let rates = rates(record, record.rows);
+    let rates = rates(record, record.references_n);
     let (mut left, mut products, mut squares) = (0.0, [0.0; 2], [0.0; 2]);
     for (place, (left_n, rate)) in left_n.iter().zip(&rates).enumerate() {
         if !(left_n * rate).is_finite() {
@@ -134,13 +132,13 @@ fn seconds(record: &CableRecord<'_>, place: usize) -> f64 {
 }
 
 /// Returns the rate of the reference, N/s; NaN where it is unknown.
-fn rates(record: &CableRecord<'_>, rows: &[Row]) -> Vec<f64> {
-    let mut rates = vec![f64::NAN; rows.len()];
+fn rates(record: &CableRecord<'_>, references_n: &[f64]) -> Vec<f64> {
+    let mut rates = vec![f64::NAN; references_n.len()];
     for (start, log) in record.logs() {
-        let of_log = rows.get(start..start + log.len()).unwrap_or_default();
+        let of_log = references_n.get(start..start + log.len()).unwrap_or_default();
         let middles = rates.iter_mut().skip(start + RATE_SAMPLES);
         for (rate, around) in middles.zip(of_log.windows(2 * RATE_SAMPLES + 1)) {
-            let change_n = around[2 * RATE_SAMPLES].reference_n - around[0].reference_n;
+            let change_n = around[2 * RATE_SAMPLES] - around[0];
             *rate = change_n / seconds(record, 2 * RATE_SAMPLES);
         }
     }
@@ -158,62 +156,85 @@ struct Case<'a> {
 }
 
 impl<'a> Case<'a> {
-    fn bench<'b>(&self, rows: &'b [Row]) -> Workbench<'b>
+    fn bench<'b>(&self, references_n: &'b [f64]) -> Workbench<'b>
     where
         'a: 'b,
     {
         let Self { record, counts, blocks, measured, stop } = *self;
-        Workbench { record: record.with_signals(rows), blocks, counts, measured, stop }
+        Workbench { record: record.with_references(references_n), blocks, counts, measured, stop }
     }
 
     /// Returns the delay, with or without a skew, that leaves the smallest residual.
     fn corrected(&self, as_it_is: &Trial, with_skew: bool) -> Option<Corrected> {
-        let (mut shift, mut rows, mut trial) = (Shift::default(), self.record.rows.to_vec(), as_it_is.clone());
+        let (mut shift, mut trial) = (Shift::default(), as_it_is.clone());
+        let mut references_n = self.record.references_n.to_vec();
         for _ in 0..ROUNDS {
-            let Step { shift: step, .. } = self.improvement(&rows, &trial, with_skew)?;
+            let Step { shift: step, .. } = self.improvement(&references_n, &trial, with_skew)?;
             shift = Shift { delay_s: shift.delay_s + step.delay_s, skew: shift.skew + step.skew };
-            rows = self.shifted(shift);
+            references_n = self.shifted(shift);
             let model: Model = trial.model();
-            trial = self.bench(&rows).try_one(&model);
+            trial = self.bench(&references_n).try_one(&model);
             let end_s = seconds(&self.record, self.record.rows.len());
             if step.delay_s.abs() + step.skew.abs() * end_s < SMALL * self.record.interval_s {
                 break;
             }
         }
-        Some(Corrected { shift, rows, trial })
+        Some(Corrected { shift, references_n, trial })
     }
 
     /// Returns the shift that would reduce the residual most.
-    fn improvement(&self, rows: &[Row], trial: &Trial, with_skew: bool) -> Option<Step> {
-        let bench = self.bench(rows);
-        let rate_n_per_s = rates(&self.record, rows);
-        let by_time = |(place, rate)| rate * seconds(&self.record, place);
-        let mut signals = vec![bench.residuals_n(&trial.values), rate_n_per_s.clone()];
-        signals.extend(with_skew.then(|| rate_n_per_s.iter().copied().enumerate().map(by_time).collect()));
-        let problem = bench.problem(&trial.free, None);
-        let left = less_projection(&problem, &trial.values, &signals)?;
-        let (residual_n, columns) = left.split_first()?;
-        let product = |one: &[f64], other: &[f64]| -> f64 {
-            let products = one.iter().zip(other).map(|(one, other)| one * other);
-            products.filter(|product| product.is_finite()).sum()
-        };
-        let matrix = DMatrix::from_fn(columns.len(), columns.len(), |row, column| {
-            product(&columns[row], &columns[column]) * if row == column { 1.0 + 1e-9 } else { 1.0 }
-        });
-        let right = DVector::from_fn(columns.len(), |row, _| product(&columns[row], residual_n));
-        let found = matrix.cholesky()?.solve(&right);
-        let shift = Shift { delay_s: found[0], skew: found.get(1).copied().unwrap_or(0.0) };
-        let gain = found.dot(&right);
-        let of_shift: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        let inflation = inflations(&of_shift, residual_n).into_iter().fold(1.0, f64::max);
-        Some(Step { shift, gain, gain_ratio: gain / product(residual_n, residual_n), inflation })
+    fn improvement(&self, references_n: &[f64], trial: &Trial, with_skew: bool) -> Option<Step> {
+        let count = 1 + usize::from(with_skew);
+        let (mut columns, mut squares) = (Columns::new(count, 0, count), 0.0);
+        self.visit(references_n, trial, with_skew, |rates, residual_n| {
+            columns.add(rates, residual_n);
+            squares += if residual_n.is_finite() { residual_n * residual_n } else { 0.0 };
+        })?;
+        let (factors, gain) = columns.fit(&[0, 1][..=usize::from(with_skew)])?;
+        let shift = Shift { delay_s: -factors[0], skew: factors.get(1).map_or(0.0, |factor| -factor) };
+        Some(Step { shift, gain, gain_ratio: gain / squares, columns })
     }
 
-    /// Returns the cycles with references interpolated linearly from later samples; NaN past the ends of each log.
-    fn shifted(&self, shift: Shift) -> Vec<Row> {
-        let mut rows = self.record.rows.to_vec();
+    /// Returns the factor by which memory in what another improvement would leave weakens the evidence, at least 1.
+    fn inflation(&self, of: &Corrected, with_skew: bool) -> Option<f64> {
+        let Step { columns, .. } = self.improvement(&of.references_n, &of.trial, with_skew)?;
+        let mut memory = columns.memory(&[0, 1][..=usize::from(with_skew)])?;
+        self.visit(&of.references_n, &of.trial, with_skew, |rates, residual_n| memory.add(rates, residual_n))?;
+        Some(memory.inflations().into_iter().fold(1.0, f64::max))
+    }
+
+    /// Visits the samples that count with the rate of the reference, and if wanted its product with the time, and with the residual, each less what the
+    /// model's parameters can compensate.
+    fn visit(
+        &self,
+        references_n: &[f64],
+        trial: &Trial,
+        with_skew: bool,
+        mut visit: impl FnMut(&[f64], f64),
+    ) -> Option<()> {
+        let bench = self.bench(references_n);
+        let (left, rate_n_per_s) = (bench.evaluated(&trial.values), rates(&self.record, references_n));
+        let signals = || -> Signals<'_> {
+            Box::new(|place, numbers| {
+                let rate = rate_n_per_s.get(place).copied().unwrap_or(f64::NAN);
+                numbers.extend([left.residual_n(place), rate]);
+                numbers.extend(with_skew.then(|| rate * seconds(&self.record, place)));
+            })
+        };
+        let problem = bench.problem(&trial.free, None);
+        visit_less_projection(&problem, &trial.values, &signals, |_, numbers| {
+            if let Some((residual_n, rates)) = numbers.split_first() {
+                visit(rates, *residual_n);
+            }
+        })
+    }
+
+    /// Returns the references interpolated linearly from later samples; NaN past the ends of each log.
+    fn shifted(&self, shift: Shift) -> Vec<f64> {
+        let mut references_n = self.record.references_n.to_vec();
         for (start, log) in self.record.logs() {
-            for (place, row) in rows.iter_mut().skip(start).take(log.len()).enumerate() {
+            let given_n = self.record.references_n.get(start..start + log.len()).unwrap_or_default();
+            for (place, reference_n) in references_n.iter_mut().skip(start).take(log.len()).enumerate() {
                 let later_s = shift.delay_s + shift.skew * seconds(&self.record, place);
                 #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
                 let at = place as f64 + later_s / self.record.interval_s;
@@ -223,15 +244,15 @@ impl<'a> Case<'a> {
                     clippy::cast_sign_loss,
                     reason = "not below 0, a place in the log"
                 )]
-                let reference_n = |place: f64| {
-                    let row = if place < 0.0 { None } else { log.get(place as usize) };
-                    row.map_or(f64::NAN, |row| row.reference_n)
+                let given_n = |place: f64| {
+                    let given_n = if place < 0.0 { None } else { given_n.get(place as usize) };
+                    given_n.copied().unwrap_or(f64::NAN)
                 };
                 let share = at - whole;
-                let [before, after] = [whole, whole + 1.0].map(reference_n);
-                row.reference_n = if share > 0.0 { before + share * (after - before) } else { before };
+                let [before, after] = [whole, whole + 1.0].map(given_n);
+                *reference_n = if share > 0.0 { before + share * (after - before) } else { before };
             }
         }
-        rows
+        references_n
     }
 }

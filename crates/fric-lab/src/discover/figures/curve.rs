@@ -99,7 +99,7 @@ pub fn curves(record: &CableRecord<'_>, before_n: &[f64], after_n: &[f64]) -> Fr
     let counts = |place: usize| {
         let row = record.rows.get(place)?;
         let (before_n, after_n) = (*before_n.get(place)?, *after_n.get(place)?);
-        let measured_n = row.reference_n - gain * row.signals.sensor_force_n;
+        let measured_n = record.reference_n(place) - gain * row.signals.sensor_force_n;
         let all = [measured_n, measured_n + before_n, measured_n + after_n];
         all.iter().all(|value| value.is_finite()).then_some((row.signals, all))
     };

@@ -74,14 +74,19 @@ impl Sums {
 }
 
 /// Returns both residuals, N, over a condition; they are NaN where a sample does not count. Returns `None` if the condition is constant.
-pub fn profile(record: &CableRecord<'_>, condition: &Condition, before_n: &[f64], after_n: &[f64]) -> Option<Profile> {
-    let condition = &Condition { bins: condition.bins.at_most(MOST_BINS), ..condition.clone() };
+pub fn profile(
+    record: &CableRecord<'_>,
+    condition: &Condition<'_>,
+    before_n: &[f64],
+    after_n: &[f64],
+) -> Option<Profile> {
+    let condition = &condition.with_at_most(MOST_BINS);
     let bins = Bins::new(condition, before_n)?;
     let mut sums = vec![[Sums::default(); 2]; bins.count()];
-    let samples = condition.values.iter().zip(record.rows).zip(before_n.iter().zip(after_n));
+    let samples = condition.values().zip(record.rows).zip(before_n.iter().zip(after_n));
     for ((value, row), (before_n, after_n)) in samples {
         let direction = sign(row.signals.displacement_m);
-        let Some(sums) = bins.of(*value).and_then(|bin| sums.get_mut(bin)) else { continue };
+        let Some(sums) = bins.of(value).and_then(|bin| sums.get_mut(bin)) else { continue };
         for (sums, residual_n) in sums.iter_mut().zip([before_n, after_n]) {
             if residual_n.is_finite() {
                 sums.add(direction, *residual_n);

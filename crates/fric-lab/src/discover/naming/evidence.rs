@@ -23,33 +23,46 @@ pub fn inflation(bench: &Workbench<'_>, model: &Trial, of: &[Parameter]) -> f64 
         .fold(1.0, |most, ratio| if ratio.is_finite() { most.max(ratio) } else { f64::INFINITY })
 }
 
-/// Returns the same ratio for each of some columns in a linear least-squares problem; samples whose residual is NaN do not count.
-pub fn inflations(columns: &[&[f64]], residual_n: &[f64]) -> Vec<f64> {
-    let count = columns.len();
-    let row = |sample: usize| {
-        let number = |column: &&[f64]| column.get(sample).copied().filter(|number| number.is_finite()).unwrap_or(0.0);
-        DVector::from_iterator(count, columns.iter().map(number))
-    };
-    let samples = || residual_n.iter().enumerate().filter(|(_, number)| number.is_finite());
-    let (mut matrix, mut right) = (DMatrix::<f64>::zeros(count, count), DVector::<f64>::zeros(count));
-    for (sample, residual_n) in samples() {
-        let row = row(sample);
-        right.axpy(*residual_n, &row, 1.0);
-        matrix.ger(1.0, &row, &row, 1.0);
+/// The memory of what some columns leave in a linear least-squares problem, taken in sample by sample.
+pub struct Memory {
+    /// Which of the numbers of a sample are the columns.
+    places: Vec<usize>,
+    /// The factors of the columns as added to the residual, and the inverse of their normal matrix.
+    factors: DVector<f64>,
+    inverse: DMatrix<f64>,
+    scores: Scores,
+    /// Sum of squares of what is left, N², and number of samples.
+    squares: f64,
+    count: f64,
+}
+
+impl Memory {
+    /// Creates the memory without samples.
+    pub fn new(places: Vec<usize>, factors: DVector<f64>, inverse: DMatrix<f64>) -> Self {
+        let scores = Scores::new(places.len());
+        Self { places, factors, inverse, scores, squares: 0.0, count: 0.0 }
     }
-    let Some(inverse) = inverse_of_normal(&matrix) else { return vec![f64::INFINITY; count] };
-    let factors = &inverse * right;
-    let (mut scores, mut squares, mut of_all) = (Scores::new(count), 0.0, 0.0);
-    for (sample, residual_n) in samples() {
-        let row = row(sample);
-        let left_n = residual_n - row.dot(&factors);
-        squares += left_n * left_n;
-        of_all += 1.0;
-        scores.add((row * left_n).as_slice());
+
+    /// Takes in a sample: the numbers of all columns, 0 where one is not finite, and the residual. It does not count if its residual is not finite.
+    pub fn add(&mut self, numbers: &[f64], residual_n: f64) {
+        if !residual_n.is_finite() {
+            return;
+        }
+        let number = |place: &usize| numbers.get(*place).copied().filter(|number| number.is_finite()).unwrap_or(0.0);
+        let row = DVector::from_iterator(self.places.len(), self.places.iter().map(number));
+        let left_n = residual_n + row.dot(&self.factors);
+        self.squares += left_n * left_n;
+        self.count += 1.0;
+        self.scores.add((row * left_n).as_slice());
     }
-    let covariance = scores.covariance(&inverse);
-    let ratio = |place: usize| covariance[(place, place)] * of_all / (squares * inverse[(place, place)]);
-    (0..count).map(ratio).map(|ratio| if ratio.is_finite() { ratio.max(1.0) } else { f64::INFINITY }).collect()
+
+    /// Returns the same ratio as [`inflation`] for each column.
+    pub fn inflations(&self) -> Vec<f64> {
+        let covariance = self.scores.covariance(&self.inverse);
+        let ratio = |place| covariance[(place, place)] * self.count / (self.squares * self.inverse[(place, place)]);
+        let known = |ratio: f64| if ratio.is_finite() { ratio.max(1.0) } else { f64::INFINITY };
+        (0..self.places.len()).map(ratio).map(known).collect()
+    }
 }
 
 /// Returns the BIC difference for `count` independent samples, a ratio of the sums of squares, and `more` additional parameters. Fewer than two
@@ -64,7 +77,8 @@ mod tests {
     use rand_chacha::rand_core::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 
-    use super::{delta_bic, inflations};
+    use super::delta_bic;
+    use crate::discover::naming::projection::Columns;
 
     /// The variance of the mean of an AR(1) series is (1 + ρ)/(1 − ρ) times that of independent numbers. A column of random signs sees none of it, and
     /// what the columns themselves explain is no memory.
@@ -73,15 +87,22 @@ mod tests {
         const MEMORY: f64 = 0.9;
         let mut random = ChaCha8Rng::seed_from_u64(3);
         let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-        let (mut level, mut signs, mut residual_n, mut number) = (Vec::new(), Vec::new(), Vec::new(), 0.0);
-        for sample in 0..40_000 {
+        let mut number = 0.0;
+        let mut sample = |place: usize| {
             number = MEMORY * number + normal();
             let sign = normal().signum();
-            level.push(1.0);
-            signs.push(sign);
-            residual_n.push(if sample % 10 == 0 { f64::NAN } else { number + 50.0 + 30.0 * sign });
+            ([1.0, sign], if usize::is_multiple_of(place, 10) { f64::NAN } else { number + 50.0 + 30.0 * sign })
+        };
+        let samples: Vec<([f64; 2], f64)> = (0..40_000).map(&mut sample).collect();
+        let mut columns = Columns::new(2, 0, 2);
+        for (numbers, residual_n) in &samples {
+            columns.add(numbers, *residual_n);
         }
-        let [of_level, of_signs] = inflations(&[&level, &signs], &residual_n)[..] else { panic!("one of each") };
+        let mut memory = columns.memory(&[0, 1]).unwrap();
+        for (numbers, residual_n) in &samples {
+            memory.add(numbers, *residual_n);
+        }
+        let [of_level, of_signs] = memory.inflations()[..] else { panic!("one of each") };
         // One sample in ten is missing, which the memory of nine tenths spans.
         let expected = (1.0 + MEMORY) / (1.0 - MEMORY) * 0.9;
         assert!((0.7 * expected..1.5 * expected).contains(&of_level), "{of_level}, expected {expected}");

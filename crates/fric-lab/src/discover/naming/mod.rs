@@ -150,7 +150,7 @@ pub struct Search<'b, 'a> {
     noise_n: f64,
     noise_squares: f64,
     around: Around,
-    conditions: &'b [Condition],
+    conditions: &'b [Condition<'a>],
     effort: &'b Effort,
     /// Number of effects that the model has from the start.
     given_count: usize,
@@ -172,7 +172,7 @@ impl<'b, 'a> Search<'b, 'a> {
         noise_n: f64,
         around: Around,
         base: &Trial,
-        conditions: &'b [Condition],
+        conditions: &'b [Condition<'a>],
         effort: &'b Effort,
     ) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]

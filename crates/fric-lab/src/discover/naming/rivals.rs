@@ -6,13 +6,15 @@
 //! for it, and are set aside. Where the law is that of an effect, this has its turn then. A jump of the sensor or
 //! of the friction is that of none.
 
+use std::rc::Rc;
+
 use fric_core::effects::Effect;
 use fric_core::parameters::{VISCOUS, Values};
 
-use super::projection::{Columns, less_projection};
+use super::projection::{Columns, Signals, visit_less_projection};
 use crate::discover::rest::{CREEP_S, crept};
-use crate::discover::workbench::{Trial, Workbench};
-use crate::fit::{Parameter, Row};
+use crate::discover::workbench::{Evaluated, Trial, Workbench};
+use crate::fit::{CableRecord, Parameter, Row};
 use crate::search::problem::Problem;
 
 /// Number of cycles on either side over which rates are computed.
@@ -66,32 +68,42 @@ pub fn best_rival(
     let is_other = |parameter: &&Parameter| !effects.iter().any(|(of, _)| of.contains(parameter));
     let others: Vec<Parameter> = model.free.iter().filter(is_other).copied().collect();
     let problem = Problem { used: bench.counts.to_vec(), ..bench.problem(&others, None) };
-    let residual_n = bench.residuals_n(&model.values);
-    let finite = residual_n.iter().filter(|number| number.is_finite());
-    let excess: f64 = finite.map(|number| number * number - noise_n * noise_n).sum();
-    let without_n: Vec<Vec<f64>> = effects.iter().map(|(_, neutral)| bench.residuals_n(neutral)).collect();
-    let added_by =
-        |without_n: &Vec<f64>| residual_n.iter().zip(without_n).map(|(with, without)| with - without).collect();
-    let mut signals: Vec<Vec<f64>> = without_n.iter().map(added_by).collect();
+    let whole = bench.evaluated(&model.values);
+    let excess: f64 =
+        whole.residuals_n().filter(|number| number.is_finite()).map(|number| number * number - noise_n * noise_n).sum();
+    let without: Vec<Evaluated<'_, '_>> = effects.iter().map(|(_, neutral)| bench.evaluated(neutral)).collect();
     // Friction warms up; the inertia on trial, for example, does not.
-    let mut without = model.values;
+    let mut of_friction = model.values;
     for (parameters, neutral) in effects {
         for place in parameters.iter().filter(|parameter| !parameter.is_friction()).map(Parameter::place) {
-            without[place] = neutral[place];
+            of_friction[place] = neutral[place];
         }
     }
-    let laws = laws(bench, &bench.added_n(&without));
-    let mut laws: Vec<Law> = laws.into_iter().filter(|law| law.of.is_none_or(|of| !kinds.contains(&of))).collect();
+    let mut laws = laws(bench, bench.evaluated(&of_friction));
+    laws.retain(|law| law.of.is_none_or(|of| !kinds.contains(&of)));
     // Whatever has a name may be one jump, of the sensor's zero or of the friction, or the damping of the contacts.
-    for ((_, neutral), without_n) in effects.iter().zip(&without_n) {
-        laws.extend([vec![1.0; residual_n.len()], bench.added_n(neutral)].map(|jumping| jump(without_n, jumping)));
-        laws.extend(contact_damping(bench, neutral, without_n));
+    for ((_, neutral), without) in effects.iter().zip(&without) {
+        laws.push(jump(|| without.residuals_n(), |_| 1.0));
+        laws.push(jump(|| without.residuals_n(), |cycle| without.added_n(cycle)));
+        laws.extend(contact_damping(bench, neutral, without));
     }
     let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
     let least: Vec<f64> = laws.iter().map(|law| law.least_of_excess * excess.max(0.0)).collect();
-    signals.extend(laws.into_iter().map(|law| law.values));
-    let columns = less_projection(&problem, &model.values, &signals)?;
-    let columns = Columns::new(&columns, effects.len(), &residual_n);
+    let signals = || -> Signals<'_> {
+        let mut of_laws: Vec<(usize, Numbers<'_>)> = laws.iter().map(|law| (0, (law.numbers)())).collect();
+        let (whole, without) = (&whole, &without);
+        Box::new(move |cycle, numbers| {
+            numbers.extend(without.iter().map(|without| whole.residual_n(cycle) - without.residual_n(cycle)));
+            numbers.extend(of_laws.iter_mut().map(|(next, of_law)| {
+                let skipped = cycle - std::mem::replace(next, cycle + 1);
+                of_law.nth(skipped).unwrap_or(f64::NAN)
+            }));
+        })
+    };
+    let mut columns = Columns::new(effects.len() + laws.len(), effects.len(), effects.len());
+    visit_less_projection(&problem, &model.values, &signals, |cycle, numbers| {
+        columns.add(numbers, whole.residual_n(cycle));
+    })?;
     let gain = |places: &[usize]| columns.gain(places);
     let all: Vec<usize> = (0..effects.len()).collect();
     let by_name = gain(&all);
@@ -133,79 +145,102 @@ pub fn best_rival(
     names.iter().enumerate().filter_map(of_law).max_by(|one, other| one.gain.total_cmp(&other.gain))
 }
 
+/// The numbers of a signal, one per cycle.
+type Numbers<'a> = Box<dyn Iterator<Item = f64> + 'a>;
+
 /// A simple law.
-struct Law {
+struct Law<'a> {
     /// The signal that the law depends on.
     signal: &'static str,
     /// The effect that it is to first order, if it is one.
     of: Option<Effect>,
     /// Fraction of the excess above the noise that the law has to remove in addition to what the names do.
     least_of_excess: f64,
-    /// In each cycle, of any unit.
-    values: Vec<f64>,
+    /// Gives its numbers from the first cycle on, of any unit. Series of all laws would take up more memory than the log.
+    numbers: Box<dyn Fn() -> Numbers<'a> + 'a>,
+}
+
+impl<'a> Law<'a> {
+    /// Creates the law that is the effect `of` to first order from its number in each of so many cycles.
+    fn by_cycle(
+        (signal, of): (&'static str, Option<Effect>),
+        cycle_count: usize,
+        number: impl Fn(usize) -> f64 + 'a,
+    ) -> Self {
+        let number = Rc::new(number);
+        let numbers = move || -> Numbers<'a> {
+            let number = Rc::clone(&number);
+            Box::new((0..cycle_count).map(move |cycle| number(cycle)))
+        };
+        Self { signal, of, least_of_excess: 0.0, numbers: Box::new(numbers) }
+    }
 }
 
 /// A signal that sets in at once, where that makes most of a residual; NaN where there is no sample.
-fn jump(residual_n: &[f64], signal: Vec<f64>) -> Law {
+fn jump<'a, R: Iterator<Item = f64>>(residuals_n: impl Fn() -> R, signal: impl Fn(usize) -> f64 + 'a) -> Law<'a> {
     let sum_up = |to: &mut [f64; 2], residual_n: f64, signal: f64| {
         if residual_n.is_finite() && signal.is_finite() {
             to[0] += residual_n * signal;
             to[1] += signal * signal;
         }
     };
-    let mut all = [0.0; 2];
-    residual_n.iter().zip(&signal).for_each(|(residual_n, signal)| sum_up(&mut all, *residual_n, *signal));
-    let (mut before, mut best, mut start) = ([0.0; 2], 0.0, residual_n.len());
-    for (place, (residual_n, signal)) in residual_n.iter().zip(&signal).enumerate() {
+    let (mut all, mut cycle_count) = ([0.0; 2], 0);
+    for (cycle, residual_n) in residuals_n().enumerate() {
+        sum_up(&mut all, residual_n, signal(cycle));
+        cycle_count = cycle + 1;
+    }
+    let (mut before, mut best, mut start) = ([0.0; 2], 0.0, cycle_count);
+    for (cycle, residual_n) in residuals_n().enumerate() {
         let after = [all[0] - before[0], all[1] - before[1]];
         let explained = [before, after].map(|[product, square]| product * product / square).iter().sum::<f64>();
         if explained > best {
-            (best, start) = (explained, place);
+            (best, start) = (explained, cycle);
         }
-        sum_up(&mut before, *residual_n, *signal);
+        sum_up(&mut before, residual_n, signal(cycle));
     }
-    let sets_in = |(place, signal): (usize, f64)| if place < start { 0.0 } else { signal };
-    Law {
-        signal: "time",
-        of: None,
-        least_of_excess: 0.0,
-        values: signal.into_iter().enumerate().map(sets_in).collect(),
-    }
+    Law::by_cycle(("time", None), cycle_count, move |cycle| if cycle < start { 0.0 } else { signal(cycle) })
 }
 
 /// The laws: sensor and reference that follow late, a bent sensor, a drag of turbulence, what warms up, of the sensor and of the friction, and a cable
 /// that creeps.
-fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
-    let record = &bench.record;
-    let of = |value: &dyn Fn(&Row) -> f64| record.rows.iter().map(value).collect::<Vec<f64>>();
-    let sensor_n = of(&|row| row.signals.sensor_force_n);
-    let sound = || sensor_n.iter().zip(bench.counts).filter(|(_, counts)| **counts).map(|(force_n, _)| *force_n);
+fn laws<'b>(bench: &Workbench<'b>, friction: Evaluated<'b, 'b>) -> Vec<Law<'b>> {
+    let record = bench.record;
+    let count = record.rows.len();
+    let of = move |cycle: usize, value: fn(&Row) -> f64| record.rows.get(cycle).map_or(f64::NAN, value);
+    let sensor_n = move |cycle: usize| of(cycle, |row| row.signals.sensor_force_n);
+    let counted = || bench.counts.iter().enumerate().filter(|(_, counts)| **counts).map(|(cycle, _)| cycle);
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-    let mean_n = sound().sum::<f64>() / sound().count().max(1) as f64;
-    let logs = || record.logs().map(|(start, rows)| start..start + rows.len());
-    let law = |signal, of, values| Law { signal, of: Some(of), least_of_excess: 0.0, values };
+    let mean_n = counted().map(sensor_n).sum::<f64>() / counted().count().max(1) as f64;
+    let law = |signal, of, number: Box<dyn Fn(usize) -> f64 + 'b>| Law::by_cycle((signal, Some(of)), count, number);
     let mut laws = vec![
-        law("force_rate", Effect::SensorLag, rates(logs(), &sensor_n, RATE_CYCLES)),
-        law("reference_rate", Effect::SensorLag, rates(logs(), &of(&|row| row.reference_n), RATE_CYCLES)),
+        law("force_rate", Effect::SensorLag, Box::new(move |cycle| rate(&record, sensor_n, RATE_CYCLES, cycle))),
         law(
-            "sensor_force",
-            Effect::SensorNonlinearity,
-            sensor_n.iter().map(|force_n| (force_n - mean_n).powi(2)).collect(),
+            "reference_rate",
+            Effect::SensorLag,
+            Box::new(move |cycle| rate(&record, |cycle| record.reference_n(cycle), RATE_CYCLES, cycle)),
         ),
+        law("sensor_force", Effect::SensorNonlinearity, Box::new(move |cycle| (sensor_n(cycle) - mean_n).powi(2))),
         law(
             "speed",
             Effect::ViscousNonlinearity,
-            of(&|row| row.signals.speed_m_per_s * row.signals.speed_m_per_s.abs()),
+            Box::new(move |cycle| of(cycle, |row| row.signals.speed_m_per_s * row.signals.speed_m_per_s.abs())),
         ),
     ];
     let end_s = record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * record.cycle_s;
+    let friction = Rc::new(friction);
     for ratio in TIME_CONSTANT_RATIOS {
-        let decay = of(&|row| (-row.cycle * record.cycle_s / (ratio * end_s)).exp());
-        let of_friction = decay.iter().zip(friction_n).map(|(decay, friction_n)| decay * friction_n).collect();
-        laws.push(law("time", Effect::FrictionWarmup, of_friction));
-        laws.push(law("time", Effect::SensorWarmup, decay));
+        let decay = move |cycle: usize| (-of(cycle, |row| row.cycle) * record.cycle_s / (ratio * end_s)).exp();
+        let friction = Rc::clone(&friction);
+        let of_friction = move |cycle: usize| decay(cycle) * friction.added_n(cycle);
+        laws.push(law("time", Effect::FrictionWarmup, Box::new(of_friction)));
+        laws.push(law("time", Effect::SensorWarmup, Box::new(decay)));
     }
-    let creep = |lag_s| Law { signal: "past_load", of: None, least_of_excess: 0.0, values: crept(record, lag_s) };
+    let creep = |lag_s| Law {
+        signal: "past_load",
+        of: None,
+        least_of_excess: 0.0,
+        numbers: Box::new(move || Box::new(crept(&record, lag_s))),
+    };
     laws.extend(CREEP_S.map(creep));
     laws
 }
@@ -214,26 +249,22 @@ fn laws(bench: &Workbench<'_>, friction_n: &[f64]) -> Vec<Law> {
 /// Wit, H. Olsson, K. J. Åström, P. Lischinsky, *A New Model for Control of Systems with Friction*, IEEE Trans. Autom. Control 40, 1995, eq. 1–3).
 /// It makes the stored friction lead, as motion that is known late does, but neither the viscous friction nor the friction at constant sliding. None if
 /// the residual without the name (model minus reference) asks for the opposite: no damping makes friction late.
-fn contact_damping(bench: &Workbench<'_>, values: &Values, residual_n: &[f64]) -> Option<Law> {
+fn contact_damping<'b>(bench: &'b Workbench<'b>, values: &Values, without: &Evaluated<'_, '_>) -> Option<Law<'b>> {
     let mut stored = *values;
     stored[VISCOUS] = 0.0;
-    let logs = bench.record.logs().map(|(start, rows)| start..start + rows.len());
-    let values = rates(logs, &bench.added_n(&stored), STORING_CYCLES);
-    let products = residual_n.iter().zip(&values).map(|(residual_n, rate)| residual_n * rate);
+    let (stored, record) = (bench.evaluated(&stored), bench.record);
+    let stored_rate = move |cycle: usize| rate(&record, |cycle| stored.added_n(cycle), STORING_CYCLES, cycle);
+    let products = without.residuals_n().enumerate().map(|(cycle, residual_n)| residual_n * stored_rate(cycle));
     let leads = products.filter(|product| product.is_finite()).sum::<f64>() < 0.0;
-    leads.then_some(Law { signal: "friction_rate", of: None, least_of_excess: LEAST_OF_DAMPING, values })
+    let law = Law::by_cycle(("friction_rate", None), record.rows.len(), stored_rate);
+    leads.then_some(Law { least_of_excess: LEAST_OF_DAMPING, ..law })
 }
 
-/// Returns the differences of a signal over so many cycles on either side, within each log.
-fn rates(logs: impl Iterator<Item = std::ops::Range<usize>>, signal: &[f64], cycles: usize) -> Vec<f64> {
-    let mut rates = vec![f64::NAN; signal.len()];
-    for log in logs {
-        for place in log.clone() {
-            let (from, to) = (place.saturating_sub(cycles).max(log.start), (place + cycles).min(log.end - 1));
-            rates[place] = signal[to] - signal[from];
-        }
-    }
-    rates
+/// Returns the difference of a signal over so many cycles on either side, within the log of the cycle.
+fn rate(record: &CableRecord<'_>, signal: impl Fn(usize) -> f64, cycles: usize, cycle: usize) -> f64 {
+    let log = record.log_of(cycle);
+    let (from, to) = (cycle.saturating_sub(cycles).max(log.start), (cycle + cycles).min(log.end - 1));
+    signal(to) - signal(from)
 }
 
 #[cfg(test)]
@@ -250,9 +281,9 @@ mod tests {
             _ => -0.1 * signal,
         };
         let residual_n: Vec<f64> = signal.iter().enumerate().map(residual).collect();
-        let law = jump(&residual_n, signal.clone());
+        let law = jump(|| residual_n.iter().copied(), |cycle| signal[cycle]);
         let expected: Vec<f64> =
             signal.iter().enumerate().map(|(place, of)| if place < 90 { 0.0 } else { *of }).collect();
-        assert_eq!((law.of, law.values), (None, expected));
+        assert_eq!((law.of, (law.numbers)().collect::<Vec<f64>>()), (None, expected));
     }
 }

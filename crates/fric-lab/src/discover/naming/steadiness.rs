@@ -9,7 +9,7 @@
 
 use fric_core::parameters::Values;
 
-use super::projection::less_projection;
+use super::projection::{Signals, visit_less_projection};
 use crate::discover::workbench::{Trial, Workbench};
 use crate::fit::Parameter;
 use crate::samples::bins::Bins;
@@ -34,7 +34,7 @@ pub struct Steadiness {
 pub struct Portrait<'a> {
     residual_n: Vec<f64>,
     own_n: Vec<f64>,
-    conditions: &'a [Condition],
+    conditions: &'a [Condition<'a>],
     noise_n: f64,
     inflation: f64,
 }
@@ -47,15 +47,20 @@ impl<'a> Portrait<'a> {
         model: &Trial,
         of: &[Parameter],
         neutral: &Values,
-        conditions: &'a [Condition],
+        conditions: &'a [Condition<'a>],
         (noise_n, inflation): (f64, f64),
     ) -> Option<Self> {
         let others: Vec<Parameter> = model.free.iter().filter(|parameter| !of.contains(parameter)).copied().collect();
         let problem = Problem { used: bench.counts.to_vec(), ..bench.problem(&others, None) };
-        let residual_n = bench.residuals_n(&model.values);
-        let without_n = bench.residuals_n(neutral);
-        let added_n: Vec<f64> = residual_n.iter().zip(&without_n).map(|(with, without)| with - without).collect();
-        let own_n = less_projection(&problem, &model.values, &[added_n])?.pop()?;
+        let (with, without) = (bench.evaluated(&model.values), bench.evaluated(neutral));
+        let added_n = || -> Signals<'_> {
+            Box::new(|cycle, numbers| numbers.push(with.residual_n(cycle) - without.residual_n(cycle)))
+        };
+        let mut own_n = vec![f64::NAN; bench.counts.len()];
+        visit_less_projection(&problem, &model.values, &added_n, |cycle, numbers| {
+            own_n.get_mut(cycle).into_iter().zip(numbers).for_each(|(own_n, number)| *own_n = *number);
+        })?;
+        let residual_n = with.residuals_n().collect();
         Some(Self { residual_n, own_n, conditions, noise_n, inflation })
     }
 
@@ -75,15 +80,15 @@ impl<'a> Portrait<'a> {
         self.conditions.iter().filter_map(|condition| self.over(condition, excess)).collect()
     }
 
-    fn over(&self, condition: &Condition, excess: f64) -> Option<Steadiness> {
+    fn over(&self, condition: &Condition<'_>, excess: f64) -> Option<Steadiness> {
         let bins = Bins::new(condition, &self.residual_n)?;
         let (first, last) = (*bins.edges.first()?, *bins.edges.last()?);
         // Sums per bin, and over the whole condition scaled to 0…1.
         let mut sums = vec![(0.0_f64, 0.0_f64); bins.count()];
         let (mut tilt, mut moments) = (0.0, [0.0_f64; 3]);
-        let samples = condition.values.iter().zip(&self.residual_n).zip(&self.own_n);
+        let samples = condition.values().zip(&self.residual_n).zip(&self.own_n);
         for ((value, residual_n), own_n) in samples.filter(|((_, r), own)| r.is_finite() && own.is_finite()) {
-            let Some((product, square)) = bins.of(*value).and_then(|bin| sums.get_mut(bin)) else { continue };
+            let Some((product, square)) = bins.of(value).and_then(|bin| sums.get_mut(bin)) else { continue };
             let (at, of_sample) = ((value - first) / (last - first), own_n * own_n);
             (*product, *square) = (*product + own_n * residual_n, *square + of_sample);
             tilt += at * own_n * residual_n;

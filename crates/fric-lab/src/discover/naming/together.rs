@@ -12,8 +12,8 @@ use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 
 use super::entry::MOST_EFFECTS;
-use super::evidence::{delta_bic, inflations};
-use super::projection::{Columns, less_projection};
+use super::evidence::{Memory, delta_bic};
+use super::projection::{Columns, Signals, visit_less_projection};
 use super::{NEGLIGIBLE, STRONG_BIC, Search};
 use crate::candidates::catalogue::{fitted, starts};
 use crate::discover::workbench::Trial;
@@ -27,12 +27,13 @@ const MOST_WEIGHED: usize = 32;
 /// A candidate that adds less than this fraction of the sum of squares adds nothing.
 const NOTHING: f64 = 1e-9;
 
-/// A candidate and the force that it adds to the model.
+/// A candidate, taken for the force that it adds to the model.
 struct Candidate {
     effect: Effect,
     /// Training sum of squares of its fit alone, N².
     training: f64,
-    added_n: Vec<f64>,
+    /// The model with it.
+    values: Values,
 }
 
 impl Search<'_, '_> {
@@ -68,9 +69,25 @@ impl Search<'_, '_> {
         }
         let candidates: Vec<Candidate> =
             round.iter().filter_map(|(effect, trial)| self.candidate(model, *effect, trial, &residual_n)).collect();
-        let added_n: Vec<Vec<f64>> = candidates.iter().map(|of| of.added_n.clone()).collect();
-        let Some(signals) = less_projection(&problem, &model.values, &added_n) else { return Vec::new() };
-        let columns = Columns::new(&signals, 0, &residual_n);
+        let values: Vec<Values> = candidates.iter().map(|of| of.values).collect();
+        let streams = self.bench.residual_streams(&values);
+        let left_n = |cycle: usize| residual_n.get(cycle).copied().unwrap_or(f64::NAN);
+        let added_n = || -> Signals<'_> {
+            let mut append_residuals = streams.start();
+            Box::new(move |cycle, numbers| {
+                append_residuals(cycle, numbers);
+                for number in numbers.iter_mut() {
+                    *number -= left_n(cycle);
+                }
+            })
+        };
+        let visit = |visit: &mut dyn FnMut(&[f64], f64)| {
+            visit_less_projection(&problem, &model.values, &added_n, |cycle, numbers| visit(numbers, left_n(cycle)))
+        };
+        let mut columns = Columns::new(values.len(), 0, values.len());
+        if visit(&mut |numbers, residual_n| columns.add(numbers, residual_n)).is_none() {
+            return Vec::new();
+        }
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let count = self.bench.count(false) as f64;
         let left = |places: &[usize]| model.training - columns.gain(places);
@@ -94,9 +111,15 @@ impl Search<'_, '_> {
             .collect();
         sets.sort_by(by_evidence);
         sets.truncate(MOST_WEIGHED);
-        for (evidence, places) in &mut sets {
-            let of_set: Vec<&[f64]> = places.iter().map(|place| signals[*place].as_slice()).collect();
-            *evidence = weakest(places, &inflations(&of_set, &residual_n));
+        let mut memories: Vec<Option<Memory>> = sets.iter().map(|(_, places)| columns.memory(places)).collect();
+        let mut remember = |numbers: &[f64], residual_n: f64| {
+            memories.iter_mut().flatten().for_each(|memory| memory.add(numbers, residual_n));
+        };
+        if visit(&mut remember).is_none() {
+            return Vec::new();
+        }
+        for ((evidence, places), memory) in sets.iter_mut().zip(&memories) {
+            *evidence = memory.as_ref().map_or(f64::INFINITY, |memory| weakest(places, &memory.inflations()));
         }
         sets.retain(|(weakest, _)| *weakest < -STRONG_BIC);
         sets.sort_by(by_evidence);
@@ -109,17 +132,15 @@ impl Search<'_, '_> {
 
     /// Returns a candidate with the force that it adds where it fits best, or, if it is best left out alone, at its first start; `None` if it adds nothing.
     fn candidate(&self, model: &Trial, effect: Effect, trial: &Trial, residual_n: &[f64]) -> Option<Candidate> {
-        let adds = |values: &Values| -> Vec<f64> {
-            let with_n = self.bench.residuals_n(values);
-            with_n.iter().zip(residual_n).map(|(with, without)| with - without).collect()
-        };
-        let is_something = |added_n: &Vec<f64>| {
-            let squares: f64 = added_n.iter().filter(|number| number.is_finite()).map(|number| number * number).sum();
+        let adds_something = |values: &Values| {
+            let with = self.bench.evaluated(values);
+            let added_n = with.residuals_n().zip(residual_n).map(|(with, without)| with - without);
+            let squares: f64 = added_n.filter(|number| number.is_finite()).map(|number| number * number).sum();
             squares > NOTHING * model.training
         };
         let starts = starts(effect, &model.values, &self.around, &self.bench.record);
-        let added_n = std::iter::once(trial.values).chain(starts).map(|values| adds(&values)).find(is_something)?;
-        Some(Candidate { effect, training: trial.training, added_n })
+        let values = std::iter::once(trial.values).chain(starts).find(adds_something)?;
+        Some(Candidate { effect, training: trial.training, values })
     }
 }
 

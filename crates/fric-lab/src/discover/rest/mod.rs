@@ -55,7 +55,7 @@ pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
 /// contacts, which store friction in proportion; a motion by the presliding distance `d` makes them forget it. So with the way `l` of the cable the
 /// stored part is `dc = dx − c·|dl|/d`. The chance level is the greatest fraction for residuals shifted in time against the load.
 fn share_of_creep(excess: &Excess<'_>) -> f64 {
-    let crept = CREEP_S.map(|lag_s| crept(excess.record, lag_s));
+    let crept = CREEP_S.map(|lag_s| crept(excess.record, lag_s).collect::<Vec<f64>>());
     let count = excess.residual_n.len();
     let greatest = |shift: usize| {
         let residual_n = || excess.residual_n.iter().cycle().skip(shift * count / SHIFTS).take(count);
@@ -65,15 +65,14 @@ fn share_of_creep(excess: &Excess<'_>) -> f64 {
     if (1..SHIFTS).any(|shift| greatest(shift) >= squares) { 0.0 } else { (squares / excess.sum()).min(1.0) }
 }
 
-/// Returns the part of the sensor force that contacts have stored from a creep with this time constant, N: see [`share_of_creep`].
-pub fn crept(record: &CableRecord<'_>, lag_s: f64) -> Vec<f64> {
+/// Returns the part of the sensor force that contacts have stored from a creep with this time constant, N in each cycle: see [`share_of_creep`].
+pub fn crept<'a>(record: &CableRecord<'a>, lag_s: f64) -> impl Iterator<Item = f64> + use<'a> {
     let values = record.params.values();
     let presliding_m_per_n = record.params.memory_m_per_n(values[MU], values[SIGMA]);
     let follows = -libm::expm1(-record.interval_s / lag_s);
-    let mut all = Vec::with_capacity(record.rows.len());
-    for (_, rows) in record.logs() {
+    record.logs().flat_map(move |(_, rows)| {
         let (mut followed_n, mut stored_n) = (f64::NAN, 0.0);
-        for row in rows {
+        rows.iter().map(move |row| {
             let force_n = row.signals.sensor_force_n;
             if !followed_n.is_finite() {
                 followed_n = force_n;
@@ -87,10 +86,9 @@ pub fn crept(record: &CableRecord<'_>, lag_s: f64) -> Vec<f64> {
                     stored_n *= libm::exp(-way_m / (presliding_m_per_n * force_n).max(f64::MIN_POSITIVE));
                 }
             }
-            all.push(stored_n);
-        }
-    }
-    all
+            stored_n
+        })
+    })
 }
 
 /// Returns how much of a residual's squares, N², is a multiple of a signal, apart from the means of both, over the samples that have a residual.

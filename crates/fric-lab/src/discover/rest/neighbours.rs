@@ -33,7 +33,7 @@ pub fn neighbours_of(residual_n: &[f64], task: &Task<'_>) -> Result<Vec<Neighbou
     let mut neighbours = Vec::new();
     let cable_count = task.all.samples.robot().cables().len();
     for cable in (0..cable_count).filter(|cable| *cable != task.own) {
-        let columns = |_: &[CableRecord<'_>], records: &[CableRecord<'_>]| records.first().map(columns);
+        let columns = |records: &[CableRecord<'_>]| records.first().map(columns);
         let Some(columns) = task.all.with(cable..cable + 1, columns)? else { continue };
         for (signal, column) in ["sensor_force", "speed"].into_iter().zip(columns) {
             let correlation = correlation(residual_n, &own_columns, &column, &blocks);

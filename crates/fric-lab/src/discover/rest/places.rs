@@ -29,6 +29,8 @@ const WHOLE: f64 = 0.995;
 const SHOULDER: f64 = 0.4;
 /// Number of equal shifts of the residual against the conditions through the log, which give the chance level.
 const SHIFTS: usize = 79;
+/// Marks a cycle without a value of a condition; beyond the cells of any condition.
+const NOWHERE: u16 = u16::MAX;
 /// Minimum number of samples in a bin.
 const FEWEST_SAMPLES: f64 = 50.0;
 /// Maximum number of time intervals to report.
@@ -96,7 +98,7 @@ impl Excess<'_> {
     }
 
     /// Returns the conditions that the excess is a function of, the most informative first.
-    pub fn places(&self, conditions: &[Condition]) -> Vec<Place> {
+    pub fn places(&self, conditions: &[Condition<'_>]) -> Vec<Place> {
         let mut places: Vec<Place> = conditions.iter().filter_map(|condition| self.place(condition)).collect();
         places.retain(|place| place.significance >= LEAST_SIGNIFICANCE);
         places.sort_by(|one, other| other.explains.total_cmp(&one.explains));
@@ -105,7 +107,7 @@ impl Excess<'_> {
 
     /// Returns the places to report to people: conditions with a range in which the excess is concentrated, or that the excess is a function of, the
     /// most certain and largest first. The significance is the greater of the two.
-    pub fn concentrations(&self, conditions: &[Condition]) -> Vec<Place> {
+    pub fn concentrations(&self, conditions: &[Condition<'_>]) -> Vec<Place> {
         let mut places: Vec<Place> = conditions
             .iter()
             .filter_map(|condition| {
@@ -123,7 +125,7 @@ impl Excess<'_> {
     }
 
     /// Returns by how many standard errors the excess in the densest range exceeds the range's fraction of the samples.
-    fn concentration(&self, condition: &Condition) -> Option<f64> {
+    fn concentration(&self, condition: &Condition<'_>) -> Option<f64> {
         let bins = Bins::new(condition, self.residual_n)?;
         let range = self.densest(&bins, condition, |block| !block.held_out)?;
         let sums: Vec<[f64; 4]> = self
@@ -133,7 +135,7 @@ impl Excess<'_> {
             .map(|block| {
                 let [mut inside, mut count_inside, mut all, mut count] = [0.0; 4];
                 for cycle in block.cycles.clone() {
-                    let value = condition.values.get(cycle).copied().unwrap_or(f64::NAN);
+                    let value = condition.at(cycle);
                     let residual_n = self.residual_n.get(cycle).copied().unwrap_or(f64::NAN);
                     let Some(bin) = bins.of(value).filter(|_| residual_n.is_finite()) else { continue };
                     let excess = self.of(residual_n);
@@ -153,14 +155,14 @@ impl Excess<'_> {
     }
 
     /// Returns the place in one condition; `None` if there is nothing to compare.
-    pub fn place(&self, condition: &Condition) -> Option<Place> {
+    pub fn place(&self, condition: &Condition<'_>) -> Option<Place> {
         let bins = Bins::new(condition, self.residual_n)?;
         let range = self.densest(&bins, condition, |_| true)?;
         self.place_in(condition, &bins, range)
     }
 
     /// Returns the same for a range of bins.
-    pub fn place_in(&self, condition: &Condition, bins: &Bins, range: Range<usize>) -> Option<Place> {
+    pub fn place_in(&self, condition: &Condition<'_>, bins: &Bins, range: Range<usize>) -> Option<Place> {
         let total = self.sum();
         let (explains, significance) = self.explained(bins, condition);
         let inside = |value: f64| bins.of(value).is_some_and(|bin| range.contains(&bin));
@@ -182,44 +184,44 @@ impl Excess<'_> {
             share_of_samples: count_inside / count,
             explains: explains / total,
             significance,
-            intervals_s: self.intervals_s(|cycle| condition.values.get(cycle).is_some_and(|value| inside(*value))),
+            intervals_s: self.intervals_s(|cycle| inside(condition.at(cycle))),
         })
     }
 
     /// Returns the values of a condition with the residual, where both exist.
-    fn samples(&self, condition: &Condition) -> impl Iterator<Item = (f64, f64)> {
-        let samples = condition.values.iter().copied().zip(self.residual_n.iter().copied());
+    fn samples(&self, condition: &Condition<'_>) -> impl Iterator<Item = (f64, f64)> {
+        let samples = condition.values().zip(self.residual_n.iter().copied());
         samples.filter(|(value, residual_n)| value.is_finite() && residual_n.is_finite())
     }
 
     /// Returns the decrease of the sum of squares over all samples by a function of the condition and the direction, and its significance.
-    fn explained(&self, bins: &Bins, condition: &Condition) -> (f64, f64) {
-        let mut cells = vec![None; self.residual_n.len()];
+    fn explained(&self, bins: &Bins, condition: &Condition<'_>) -> (f64, f64) {
+        let mut halves = vec![NOWHERE; self.residual_n.len()];
         for block in self.blocks {
             for cycle in block.cycles.clone() {
-                let Some(bin) = condition.values.get(cycle).and_then(|value| bins.of(*value)) else { continue };
+                let Some(bin) = bins.of(condition.at(cycle)) else { continue };
                 let direction = self.record.rows.get(cycle).map_or(0.0, |row| sign(row.signals.displacement_m));
                 let cell = 3 * bin + if direction > 0.0 { 2 } else { usize::from(direction < 0.0) };
-                if let Some(of_cycle) = cells.get_mut(cycle) {
-                    *of_cycle = Some((cell, usize::from(block.held_out)));
+                if let Some(of_cycle) = halves.get_mut(cycle) {
+                    *of_cycle = u16::try_from(2 * cell + usize::from(block.held_out)).unwrap_or(NOWHERE);
                 }
             }
         }
-        let found = self.gain_of_means(&cells, 3 * bins.count(), 0);
+        let found = self.gain_of_means(&halves, 3 * bins.count(), 0);
         let chances: Vec<f64> = (1..=SHIFTS)
-            .map(|shift| self.gain_of_means(&cells, 3 * bins.count(), shift * cells.len() / (SHIFTS + 1)))
+            .map(|shift| self.gain_of_means(&halves, 3 * bins.count(), shift * halves.len() / (SHIFTS + 1)))
             .collect();
         (found, significance(found, &chances))
     }
 
     /// Returns the decrease of the held-out sum of squares by the means over cells of the training samples, scaled to all samples. The residuals are
-    /// shifted in time by `shift` cycles. `cells` holds the cell of each cycle, and 1 where the cycle is held out.
-    fn gain_of_means(&self, cells: &[Option<(usize, usize)>], count: usize, shift: usize) -> f64 {
-        let mut sums = vec![[(0.0_f64, 0.0_f64); 2]; count];
+    /// shifted in time by `shift` cycles. `halves` holds twice the cell of each cycle, plus 1 where the cycle is held out, or [`NOWHERE`].
+    fn gain_of_means(&self, halves: &[u16], cell_count: usize, shift: usize) -> f64 {
+        let mut sums = vec![[(0.0_f64, 0.0_f64); 2]; cell_count];
         let (later, earlier) = self.residual_n.split_at(shift);
-        for (residual_n, cell) in earlier.iter().chain(later).zip(cells) {
-            let Some((cell, half)) = cell.filter(|_| residual_n.is_finite()) else { continue };
-            if let Some((sum, count)) = sums.get_mut(cell).and_then(|sums| sums.get_mut(half)) {
+        for (residual_n, half) in earlier.iter().chain(later).zip(halves).filter(|(number, _)| number.is_finite()) {
+            let half = usize::from(*half);
+            if let Some((sum, count)) = sums.get_mut(half / 2).and_then(|sums| sums.get_mut(half % 2)) {
                 (*sum, *count) = (*sum + residual_n, *count + 1.0);
             }
         }
@@ -236,10 +238,10 @@ impl Excess<'_> {
     }
 
     /// Returns the contiguous bins around the one with the highest excess per sample, in some blocks.
-    fn densest(&self, bins: &Bins, condition: &Condition, of: impl Fn(&Block) -> bool) -> Option<Range<usize>> {
+    fn densest(&self, bins: &Bins, condition: &Condition<'_>, of: impl Fn(&Block) -> bool) -> Option<Range<usize>> {
         let mut sums = vec![(0.0, 0.0); bins.count()];
         for cycle in self.blocks.iter().filter(|block| of(block)).flat_map(|block| block.cycles.clone()) {
-            let bin = condition.values.get(cycle).and_then(|value| bins.of(*value));
+            let bin = bins.of(condition.at(cycle));
             let residual_n = self.residual_n.get(cycle).copied().filter(|number| number.is_finite());
             if let (Some((sum, count)), Some(residual_n)) = (bin.and_then(|bin| sums.get_mut(bin)), residual_n) {
                 (*sum, *count) = (*sum + self.of(residual_n), *count + 1.0);

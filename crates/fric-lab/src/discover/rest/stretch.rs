@@ -30,7 +30,7 @@ pub struct Stretch {
 type Sums = Vec<(f64, f64)>;
 
 /// Returns the section of cable with friction of its own, if there is one.
-pub fn stretch_of_cable(excess: &Excess<'_>, conditions: &[Condition]) -> Option<Stretch> {
+pub fn stretch_of_cable(excess: &Excess<'_>, conditions: &[Condition<'_>]) -> Option<Stretch> {
     let length = conditions.iter().find(|condition| condition.signal == "length")?;
     let bins = Bins::new(length, excess.residual_n)?;
     let blocks: Vec<(bool, Sums)> = excess
@@ -40,7 +40,7 @@ pub fn stretch_of_cable(excess: &Excess<'_>, conditions: &[Condition]) -> Option
             let mut sums = vec![(0.0, 0.0); bins.count()];
             for cycle in block.cycles.clone() {
                 let residual_n = excess.residual_n.get(cycle).copied().filter(|number| number.is_finite());
-                let bin = length.values.get(cycle).and_then(|value| bins.of(*value));
+                let bin = bins.of(length.at(cycle));
                 let direction = excess.record.rows.get(cycle).map_or(0.0, |row| sign(row.signals.displacement_m));
                 if let (Some(residual_n), Some((sum, count))) = (residual_n, bin.and_then(|bin| sums.get_mut(bin))) {
                     (*sum, *count) = (*sum + direction * residual_n, *count + direction.abs());

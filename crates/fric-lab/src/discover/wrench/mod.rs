@@ -156,6 +156,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         fitted: &fitted,
         samples: crate::samples::selection::count(&first.standings),
         faults: &sensors.faults,
+        times_s: measurements.times_s(),
     }
     .report(covariances.map(|[covariance, _]| covariance))
 }

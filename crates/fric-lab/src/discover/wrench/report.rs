@@ -1,5 +1,7 @@
 //! The result of a search by the wrench: each cable, the wrench before and after, the corrections of the robot file.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, Matrix6};
 
 use super::bench::{Bench, Trial, Unknown};
@@ -28,6 +30,8 @@ pub struct Case<'b, 'a> {
     pub samples: SampleCounts,
     /// The faults of each cable's sensor.
     pub faults: &'b [Vec<RecordingFault>],
+    /// The time of each sample, s since the first one.
+    pub times_s: Arc<Vec<f64>>,
 }
 
 impl Case<'_, '_> {
@@ -101,7 +105,7 @@ impl Case<'_, '_> {
 
     /// Returns the result of one cable.
     fn cable(&self, cable: usize, covariance: &DMatrix<f64>) -> CableDiscovery {
-        let Self { bench, base, naming, fitted, samples, faults } = *self;
+        let Self { bench, base, naming, fitted, samples, faults, .. } = *self;
         let record = &bench.records[cable];
         let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
         let (residual_before_n, residual_after_n) = (residual_n(base), residual_n(fitted));
@@ -178,7 +182,7 @@ impl Case<'_, '_> {
             lack: None,
             profiles: Vec::new(),
             curves: curves(record, &residual_before_n, &residual_after_n),
-            times_s: (0..record.rows.len()).map(|cycle| record.time_s(cycle)).collect(),
+            times_s: Arc::clone(&self.times_s),
             residual_before_n,
             residual_after_n,
         }

@@ -5,6 +5,9 @@
 //! of squares falls by `bᵀS⁻¹b` with `S = CᵀC − CᵀJ(JᵀJ)⁻¹JᵀC` and `b = Cᵀr − CᵀJ(JᵀJ)⁻¹Jᵀr` (score test; C. R. Rao, *Large sample tests of
 //! statistical hypotheses*, Proc. Cambridge Phil. Soc. 44, 1948). All candidates share one pass over the training samples.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::{DMatrix, DVector, Vector6};
@@ -16,9 +19,9 @@ use crate::candidates::catalogue::{fitted, starts};
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::effects::Around;
 use crate::fit::Parameter;
-use crate::search::gang::forces_of;
 use crate::search::gram::Gram;
 use crate::search::pass::{Forces, Part};
+use crate::search::stream::Stream;
 
 /// A direction of a candidate counts as one that the model already has if less than this fraction of its squares is independent of the model.
 const OWN_RATIO: f64 = 1e-6;
@@ -38,19 +41,60 @@ struct Start {
     cable: usize,
     effect: Effect,
     values: Values,
+    /// Whether it is not the model itself. It has one more column then: the change from the model to the start.
+    is_elsewhere: bool,
     /// Its columns among those of the cable: changes of the cable's force.
-    columns: std::ops::Range<usize>,
+    columns: Range<usize>,
 }
 
-/// The columns of a cable's starts, for each training sample one after the other.
-struct Columns {
-    numbers: Vec<f64>,
-    count: usize,
+/// The columns of all starts. They come along with the log, because series of them would take up far more memory than the log.
+struct Columns<'a> {
+    starts: &'a [Start],
+    /// The forces of the starts.
+    stream: Stream<'a>,
+    /// The forces of the model, by cable.
+    current: &'a [Arc<Forces>],
+    /// The columns of each cable in the cycle reached.
+    of_cables: Vec<Vec<f64>>,
 }
 
-impl Columns {
-    fn at(&self, sample: usize) -> &[f64] {
-        self.numbers.get(sample * self.count..(sample + 1) * self.count).unwrap_or_default()
+impl<'a> Columns<'a> {
+    fn new(bench: &Bench<'a>, starts: &'a [Start], current: &'a [Arc<Forces>]) -> Self {
+        let part = |start: &Start| {
+            let record = *bench.records.get(start.cable)?;
+            Some(Part { record, values: start.values, free: fitted(start.effect) })
+        };
+        let stream = Stream::new(starts.iter().filter_map(part).collect());
+        Self { starts, stream, current, of_cables: vec![Vec::new(); bench.records.len()] }
+    }
+
+    /// Returns the number of columns of a cable.
+    fn count(&self, cable: usize) -> usize {
+        let of_cable = self.starts.iter().filter(|start| start.cable == cable);
+        of_cable.map(|start| start.columns.end).max().unwrap_or(0)
+    }
+
+    /// Goes on to a cycle, which must not be before the last one.
+    fn advance_to(&mut self, cycle: usize) {
+        self.stream.advance_to(cycle);
+        self.of_cables.iter_mut().for_each(Vec::clear);
+        for (place, start) in self.starts.iter().enumerate() {
+            let (force_n, derivatives) = self.stream.at(place, cycle);
+            let now_n = self.current.get(start.cable).map_or(f64::NAN, |forces| forces.at(cycle).0);
+            let Some(columns) = self.of_cables.get_mut(start.cable) else { continue };
+            columns.extend_from_slice(derivatives);
+            columns.extend(start.is_elsewhere.then_some(force_n - now_n));
+        }
+    }
+
+    /// Returns the columns of a cable.
+    fn of_cable(&self, cable: usize) -> &[f64] {
+        self.of_cables.get(cable).map_or(&[], Vec::as_slice)
+    }
+
+    /// Returns the columns of a start.
+    fn of_start(&self, start: &Start) -> &[f64] {
+        self.of_cable(start.cable).get(start.columns.clone()).unwrap_or_default()
     }
 }
 
@@ -77,41 +121,21 @@ pub fn promises(
         Effect::ALL.iter().copied().filter(wanted).collect::<Vec<Effect>>()
     };
     let mut all_starts: Vec<Start> = Vec::new();
-    let mut all_columns: Vec<Columns> = Vec::new();
-    let used = bench.used(false);
     let current = bench.with_problem(model, Vec::new(), |problem| problem.forces(&model.values)).unwrap_or_default();
     for cable in cables {
         let (Some(record), Some(around)) = (bench.records.get(cable), around.get(cable)) else { continue };
-        let (Some(values), Some(now)) = (model.values.get(cable), current.get(cable)) else { continue };
-        let from: Vec<(Effect, Values)> = catalogue(cable)
-            .into_iter()
-            .flat_map(|effect| starts(effect, values, around, record).into_iter().map(move |start| (effect, start)))
-            .collect();
-        let parts: Vec<Part<'_>> = from
-            .iter()
-            .map(|(effect, values)| Part { record: *record, values: *values, free: fitted(*effect) })
-            .collect();
-        let forces = forces_of(&parts, bench.stop).unwrap_or_default();
+        let Some(values) = model.values.get(cable).filter(|_| cable < current.len()) else { continue };
         let mut first = 0;
-        for ((effect, start), part) in from.iter().zip(&parts) {
-            // One more column for the change from the model to the start.
-            let count = part.free.len() + usize::from(is_elsewhere(start, values));
-            all_starts.push(Start { cable, effect: *effect, values: *start, columns: first..first + count });
-            first += count;
-        }
-        let mut numbers = Vec::with_capacity(first * bench.count(false));
-        for cycle in used.iter().enumerate().filter(|(_, used)| **used).map(|(cycle, _)| cycle) {
-            let now_n = now.at(cycle).0;
-            for ((_, start), forces) in from.iter().zip(&forces) {
-                let (force_n, derivatives): (f64, &[f64]) = Forces::at(forces, cycle);
-                numbers.extend_from_slice(derivatives);
-                if is_elsewhere(start, values) {
-                    numbers.push(force_n - now_n);
-                }
+        for effect in catalogue(cable) {
+            for start in starts(effect, values, around, record) {
+                let is_elsewhere = is_elsewhere(&start, values);
+                let count = fitted(effect).len() + usize::from(is_elsewhere);
+                all_starts.push(Start { cable, effect, values: start, is_elsewhere, columns: first..first + count });
+                first += count;
             }
         }
-        all_columns.push(Columns { numbers, count: first });
     }
+    let mut columns = Columns::new(bench, &all_starts, &current);
     let wanted = bench.description.candidates().into_iter().filter(|of| is_wanted(Candidate::Geometry(*of)));
     let force_n = |place: usize, cable: usize| current.get(cable).map_or(f64::NAN, |forces| forces.at(place).0);
     let geometries = wanted.map(|of| {
@@ -120,7 +144,7 @@ pub fn promises(
         GeometrySums::new(of, tangents, model.unknowns().len())
     });
     let mut geometries: Vec<GeometrySums> = geometries.collect();
-    let sums = Sums::of(bench, model, &all_columns, &all_starts, &mut geometries);
+    let sums = Sums::of(bench, model, &mut columns, &mut geometries);
     let mut promises: Vec<Promise> = Vec::new();
     let mut offer = |promise: Promise| {
         if !is_wanted(promise.candidate) || !promise.gain.is_finite() {
@@ -260,6 +284,28 @@ impl GeometrySums {
     }
 }
 
+/// Returns the pairs of starts whose products are needed, with sums of 0: each start with itself, and with the start of the same effect on each other
+/// cable that has the same index among its starts.
+fn squares_of(starts: &[Start]) -> Vec<(usize, usize, DMatrix<f64>)> {
+    let order = |place: usize, of: &Start| {
+        starts.iter().take(place).filter(|other| other.cable == of.cable && other.effect == of.effect).count()
+    };
+    let mut squares = Vec::new();
+    for (one, from) in starts.iter().enumerate() {
+        for (other, to) in starts.iter().enumerate().skip(one) {
+            let is_pair = other == one
+                || from.effect == to.effect
+                    && from.cable != to.cable
+                    && from.columns.len() == to.columns.len()
+                    && order(one, from) == order(other, to);
+            if is_pair {
+                squares.push((one, other, DMatrix::zeros(from.columns.len(), to.columns.len())));
+            }
+        }
+    }
+    squares
+}
+
 /// Sums over the training samples.
 struct Sums {
     /// `JᵀJ`.
@@ -270,89 +316,62 @@ struct Sums {
     mixed: Vec<DMatrix<f64>>,
     /// `Cᵀr` of each cable.
     scores: Vec<DVector<f64>>,
-    /// `CᵀC` of each start with itself, and with the start of the same effect on each other cable that has the same index among its starts.
+    /// `CᵀC` of the pairs of [`squares_of`].
     squares: Vec<(usize, usize, DMatrix<f64>)>,
 }
 
 impl Sums {
-    fn of(
-        bench: &Bench<'_>,
-        model: &Model,
-        columns: &[Columns],
-        starts: &[Start],
-        geometries: &mut [GeometrySums],
-    ) -> Self {
+    fn of(bench: &Bench<'_>, model: &Model, columns: &mut Columns<'_>, geometries: &mut [GeometrySums]) -> Self {
         let count = model.unknowns().len();
         let (structure, _) = bench.description.changed(&model.changes);
         let cables = bench.records.len();
         let mut gram = Gram::new(count);
-        let mut mixed: Vec<Vec<f64>> = columns.iter().map(|of| vec![0.0; of.count * count]).collect();
-        let mut scores: Vec<DVector<f64>> = columns.iter().map(|of| DVector::zeros(of.count)).collect();
-        let mut levers_of: Vec<Vec<Vector6<f64>>> = vec![Vec::new(); cables];
+        let counts: Vec<usize> = (0..cables).map(|cable| columns.count(cable)).collect();
+        let mut mixed: Vec<Vec<f64>> = counts.iter().map(|of_cable| vec![0.0; of_cable * count]).collect();
+        let mut scores: Vec<DVector<f64>> = counts.iter().map(|of_cable| DVector::zeros(*of_cable)).collect();
+        let starts = columns.starts;
+        let mut squares = squares_of(starts);
+        let mut levers: Vec<Vector6<f64>> = Vec::with_capacity(cables);
         // The product of a cable's whitened column of the structure matrix with the rows: derivatives, then deviation.
         let mut seen = vec![0.0; count + 1];
-        let mut sample = 0;
         bench.rows(model, |place, rows| {
             for row in rows {
                 gram.add(row);
             }
-            for (cable, columns) in columns.iter().enumerate() {
+            columns.advance_to(place);
+            levers.clear();
+            for (cable, (mixed, scores)) in mixed.iter_mut().zip(&mut scores).enumerate() {
                 let lever =
                     structure.get(place * cables + cable).map_or_else(Vector6::zeros, |of| bench.whitening * of);
+                levers.push(lever);
                 seen.fill(0.0);
                 for (row, part) in rows.iter().zip(lever.iter()) {
                     seen.iter_mut().zip(row).for_each(|(sum, entry)| *sum += part * entry);
                 }
                 let Some((deviation, derivatives)) = seen.split_last() else { continue };
-                let changes = columns.at(sample);
-                if let (Some(mixed), Some(scores)) = (mixed.get_mut(cable), scores.get_mut(cable)) {
-                    for (change, of_change) in changes.iter().zip(mixed.chunks_exact_mut(count.max(1))) {
-                        of_change.iter_mut().zip(derivatives).for_each(|(sum, derivative)| *sum += change * derivative);
-                    }
-                    scores.iter_mut().zip(changes).for_each(|(sum, change)| *sum += change * deviation);
+                let changes = columns.of_cable(cable);
+                for (change, of_change) in changes.iter().zip(mixed.chunks_exact_mut(count.max(1))) {
+                    of_change.iter_mut().zip(derivatives).for_each(|(sum, derivative)| *sum += change * derivative);
                 }
-                levers_of.iter_mut().skip(cable).take(1).for_each(|of| of.push(lever));
+                scores.iter_mut().zip(changes).for_each(|(sum, change)| *sum += change * deviation);
+            }
+            for (one, other, sum) in &mut squares {
+                let (Some(one), Some(other)) = (starts.get(*one), starts.get(*other)) else { continue };
+                let (Some(left), Some(right)) = (levers.get(one.cable), levers.get(other.cable)) else { continue };
+                let lever = left.dot(right);
+                for (row, left) in columns.of_start(one).iter().enumerate() {
+                    for (column, right) in columns.of_start(other).iter().enumerate() {
+                        sum[(row, column)] += lever * left * right;
+                    }
+                }
             }
             for of in geometries.iter_mut() {
                 of.add(place, rows);
             }
-            sample += 1;
         });
         let (normal, gradient, _) = gram.normal_equations();
-        let mixed =
-            mixed.iter().zip(columns).map(|(mixed, of)| DMatrix::from_row_slice(of.count, count, mixed)).collect();
-        let mut squares = Vec::new();
-        for (one, from) in starts.iter().enumerate() {
-            let order = |place: usize, of: &Start| {
-                starts.iter().take(place).filter(|other| other.cable == of.cable && other.effect == of.effect).count()
-            };
-            for (other, to) in starts.iter().enumerate().skip(one) {
-                let is_pair = other == one
-                    || from.effect == to.effect
-                        && from.cable != to.cable
-                        && from.columns.len() == to.columns.len()
-                        && order(one, from) == order(other, to);
-                let (Some(left), Some(right)) = (columns.get(from.cable), columns.get(to.cable)) else { continue };
-                let (Some(left_levers), Some(right_levers)) = (levers_of.get(from.cable), levers_of.get(to.cable))
-                else {
-                    continue;
-                };
-                if is_pair {
-                    let mut sum = DMatrix::zeros(from.columns.len(), to.columns.len());
-                    for (sample, (one, other)) in left_levers.iter().zip(right_levers).enumerate() {
-                        let left = left.at(sample).get(from.columns.clone()).unwrap_or_default();
-                        let right = right.at(sample).get(to.columns.clone()).unwrap_or_default();
-                        let lever = one.dot(other);
-                        for (row, left) in left.iter().enumerate() {
-                            for (column, right) in right.iter().enumerate() {
-                                sum[(row, column)] += lever * left * right;
-                            }
-                        }
-                    }
-                    squares.push((one, other, sum));
-                }
-            }
-        }
+        let of_cable = |(mixed, of_cable): (&Vec<f64>, &usize)| DMatrix::from_row_slice(*of_cable, count, mixed);
+        let mixed = mixed.iter().zip(&counts).map(of_cable).collect();
         Self { normal, gradient, mixed, scores, squares }
     }
 

@@ -77,18 +77,20 @@ pub fn with_typical(record: &CableRecord<'_>, values: &Values, effect: Effect, d
 pub struct Prediction<'a> {
     record: CableRecord<'a>,
     rows: Vec<Row>,
+    references_n: Vec<f64>,
     stop: &'a AtomicBool,
 }
 
 impl<'a> Prediction<'a> {
     /// Creates the prediction. Returns `None` if the model gives non-finite forces.
     pub fn new(record: &CableRecord<'a>, truth: &Values, stop: &'a AtomicBool) -> Option<Self> {
-        Some(Self { record: *record, rows: sensed(record, truth)?, stop })
+        let (rows, references_n) = sensed(record, truth)?;
+        Some(Self { record: *record, rows, references_n, stop })
     }
 
     /// Returns its cycles.
     pub fn record(&self) -> CableRecord<'_> {
-        self.record.with_signals(&self.rows)
+        CableRecord { rows: &self.rows, references_n: &self.references_n, ..self.record }
     }
 
     /// Returns the model that comes nearest to the log with an effect in place of the true one; `None` if stopped or without a start. `also` is an

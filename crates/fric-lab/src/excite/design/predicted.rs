@@ -70,22 +70,21 @@ pub fn frictionless<'a>(robot: &RobotParams<'a>, run: &mut Excitation) -> Result
     Ok(measurements)
 }
 
-/// Returns the rows of a cable with the sensor forces of a model; `None` if the model gives a non-finite force.
-pub fn sensed(record: &CableRecord<'_>, values: &Values) -> Option<Vec<Row>> {
+/// Returns the rows of a cable with the sensor forces of a model, and its references; `None` if the model gives a non-finite force.
+pub fn sensed(record: &CableRecord<'_>, values: &Values) -> Option<(Vec<Row>, Vec<f64>)> {
     let mut rows = record.rows.to_vec();
+    let references_n: Vec<f64> = record.references_n.iter().map(|reference_n| reference_n + values[OFFSET]).collect();
     for (start, log) in record.logs() {
         let mut group = CableGroup::<f64>::new(&[record.params], values, record.cycle_s, |_| false)?;
-        for row in rows.iter_mut().skip(start).take(log.len()) {
-            row.reference_n += values[OFFSET];
-            sense(&mut group, row)?;
+        for (row, reference_n) in rows.iter_mut().zip(&references_n).skip(start).take(log.len()) {
+            sense(&mut group, row, *reference_n)?;
         }
     }
-    Some(rows)
+    Some((rows, references_n))
 }
 
-/// Finds the sensor force of a cycle and steps the model with it.
-fn sense(group: &mut CableGroup<f64>, row: &mut Row) -> Option<()> {
-    let wanted_n = row.reference_n;
+/// Finds the sensor force of a cycle that makes the wanted force at the platform, and steps the model with it.
+fn sense(group: &mut CableGroup<f64>, row: &mut Row, wanted_n: f64) -> Option<()> {
     let deviation_n = |row: &Row| {
         let mut looked_at = group.clone();
         step(&mut looked_at, row) - wanted_n
@@ -140,13 +139,13 @@ mod tests {
         let (stop, base) = (AtomicBool::new(false), record.params.values());
         for effect in Effect::CATALOGUE {
             let values = with_typical(&record, &base, *effect, 20.0).unwrap();
-            let rows = sensed(&record, &values).unwrap();
-            let record = record.with_signals(&rows);
+            let (rows, references_n) = sensed(&record, &values).unwrap();
+            let record = CableRecord { rows: &rows, references_n: &references_n, ..record };
             let part = Part { record, values, free: Vec::new() };
             let forces = forces_of(&[part], &stop).unwrap();
-            for (cycle, row) in rows.iter().enumerate() {
+            for (cycle, (row, reference_n)) in rows.iter().zip(&references_n).enumerate() {
                 let force_n = forces[0].at(cycle).0;
-                assert!((force_n - row.reference_n).abs() < 1e-6, "{} at {cycle}: {force_n}", effect.kind());
+                assert!((force_n - reference_n).abs() < 1e-6, "{} at {cycle}: {force_n}", effect.kind());
                 assert!(row.is_sound(), "{} at {cycle}", effect.kind());
             }
         }

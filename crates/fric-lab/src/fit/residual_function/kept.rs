@@ -36,11 +36,13 @@ impl ResidualFunction {
     /// Returns the data of the function.
     #[must_use]
     pub fn kept(&self) -> KeptFunction {
-        let Cable { params: _, rows, starts, cycle_s, interval_s, reference_is_known } = self.cable.as_ref();
+        let Cable { params: _, rows, references_n, starts, cycle_s, interval_s, reference_is_known } =
+            self.cable.as_ref();
+        let all = rows.iter().zip(references_n).zip(&self.used);
         KeptFunction {
             free: self.free.clone(),
             start: self.start.to_vec(),
-            rows: rows.iter().zip(&self.used).map(|(row, used)| row.to_numbers(*used)).collect(),
+            rows: all.map(|((row, reference_n), used)| row.to_numbers(*reference_n, *used)).collect(),
             log_starts: starts.clone(),
             cycle_s: *cycle_s,
             interval_s: *interval_s,
@@ -53,8 +55,9 @@ impl ResidualFunction {
     #[must_use]
     pub fn from_kept(params: &CableParams, kept: KeptFunction) -> Option<Self> {
         let KeptFunction { free, start, rows, log_starts, cycle_s, interval_s, reference_is_known } = kept;
-        let (rows, used): (Vec<Row>, Vec<bool>) = rows.iter().map(Row::from_numbers).unzip();
-        let cable = Cable { params: *params, rows, starts: log_starts, cycle_s, interval_s, reference_is_known };
+        let (rows, references_n, used): (Vec<Row>, Vec<f64>, Vec<bool>) = rows.iter().map(Row::from_numbers).collect();
+        let (params, starts) = (*params, log_starts);
+        let cable = Cable { params, rows, references_n, starts, cycle_s, interval_s, reference_is_known };
         Some(Self { cable: Arc::new(cable), free, given: params.values(), start: start.try_into().ok()?, used })
     }
 }

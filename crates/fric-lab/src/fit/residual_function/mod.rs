@@ -12,7 +12,8 @@ pub use kept::KeptFunction;
 
 use super::FitOptions;
 use super::cables::{Search, prepared};
-use crate::samples::record::{CableRecord, Row};
+use crate::samples::cable::CableRecord;
+use crate::samples::record::Row;
 use crate::samples::selection::Standing;
 use crate::search::gang::Gang;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
@@ -114,6 +115,7 @@ impl ResidualFunction {
 struct Cable {
     params: CableParams,
     rows: Vec<Row>,
+    references_n: Vec<f64>,
     starts: Vec<usize>,
     cycle_s: f64,
     interval_s: f64,
@@ -123,14 +125,16 @@ struct Cable {
 impl Cable {
     fn of(record: &CableRecord<'_>) -> Self {
         let starts = record.logs().map(|(start, _)| start).collect();
-        let CableRecord { params, rows, cycle_s, interval_s, reference_is_known, .. } = *record;
-        Self { params: *params, rows: rows.to_vec(), starts, cycle_s, interval_s, reference_is_known }
+        let CableRecord { params, rows, references_n, cycle_s, interval_s, reference_is_known, .. } = *record;
+        let (rows, references_n) = (rows.to_vec(), references_n.to_vec());
+        Self { params: *params, rows, references_n, starts, cycle_s, interval_s, reference_is_known }
     }
 
     fn record(&self) -> CableRecord<'_> {
         CableRecord {
             params: &self.params,
             rows: &self.rows,
+            references_n: &self.references_n,
             starts: &self.starts,
             times_s: &[],
             cycle_s: self.cycle_s,
@@ -138,6 +142,7 @@ impl Cable {
             reference_is_known: self.reference_is_known,
             length_play_m: 0.0,
             per_log: None,
+            added_noise: None,
         }
     }
 }

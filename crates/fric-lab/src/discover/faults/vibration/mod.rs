@@ -150,7 +150,7 @@ fn mean_square_of(pole: Complex<f64>) -> f64 {
 }
 
 /// Returns the vibration in a residual, N (NaN where there is no sample), or `None`. `way` has the cable's motion by rows, `signals` its motion and load.
-pub fn vibration(residual_n: &[f64], times: &Times, way: &[Way], signals: &[Together]) -> Option<Vibration> {
+pub fn vibration(residual_n: &[f64], times: &Times, way: &[Way], signals: &[Together<'_>]) -> Option<Vibration> {
     let spectrum = Spectrum::of(residual_n, times)?;
     let found = loudest(&spectrum, times)?;
     let is_worth_it = found.rms_n().powi(2) > LEAST_SHARE * mean_square(residual_n);
