@@ -1,7 +1,8 @@
-"""Conversion of logs to data frames."""
+"""Logs as data frames and as a table for notebooks."""
 
 from __future__ import annotations
 
+from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -31,3 +32,24 @@ def frame(log: Log, library: str) -> Any:
     except ImportError as error:
         raise ImportError(f"Log.to_{library} needs {library}; install it with `pip install {library}`") from error
     return module.DataFrame(columns(log))
+
+
+def table(log: Log) -> str:
+    """Returns the size of the log, its signals, and the range of each cable's signals as HTML."""
+    known = [name for name in ("sensor_force_n", "length_m", "speed_m_per_s", "reference_force_n") if name in log]
+    head = "".join(f"<th>{name}</th>" for name in known)
+    rows = ""
+    for place, cable in enumerate(log.cable_names):
+        cells = "".join(f"<td>{_range(getattr(log, name)[:, place])}</td>" for name in known)
+        rows += f"<tr><th>{escape(cable)}</th>{cells}</tr>"
+    duration_s = log.time_s[-1] if len(log) else 0.0
+    signals = ", ".join(log) or "none"
+    return (
+        f"<p>{len(log)} rows, {duration_s:.3f} s; signals: {signals}</p>"
+        f"<table><thead><tr><th>cable</th>{head}</tr></thead><tbody>{rows}</tbody></table>"
+    )
+
+
+def _range(column: np.ndarray[Any, Any]) -> str:
+    known = column[np.isfinite(column)]
+    return f"{known.min():.4g} … {known.max():.4g}" if known.size else "–"

@@ -274,3 +274,18 @@ def test_a_real_fit_can_be_drawn(robot, log):
     assert [panel.get_xlabel() for panel in panels] == list(result.cables[0].values)
     histogram, _ = fric.plot.residuals(log, result, "cable2", lag_count=20)
     assert histogram.get_xlabel() == "compensated less reference [N]"
+
+
+def test_samples_beyond_memory_need_a_folder(bench, monkeypatch):
+    robot, log = bench
+    # 64 MB of rows of 64 bytes.
+    times = -(-(1 << 20) // len(log)) + 1
+    arrays = {name: np.tile(getattr(log, name), (times, 1)) for name in ("sensor_force_n", "length_m", "reference_force_n")}
+    stamp_nanos = np.arange(times * len(log)) * 1_000_000
+    long = fric.Log.from_arrays(cable_names=log.cable_names, stamp_nanos=stamp_nanos, **arrays)
+    # The first is Unix's, the others are of Windows.
+    for variable in ("TMPDIR", "TMP", "TEMP"):
+        monkeypatch.setenv(variable, "nowhere")
+    for work in (fric.fit, fric.discover):
+        with pytest.raises(fric.OutputError, match=r"too many for memory.* nowhere .*TMP.* 72 free bytes"):
+            work(robot, long)

@@ -306,6 +306,19 @@ def test_arrays_are_copied_and_quaternions_normalised():
     assert made.length_m[0, 0] == 0.0
 
 
+def test_a_log_is_a_table_in_a_notebook(log):
+    part = log[0.0:1.0]
+    page = part._repr_html_()
+    assert "1000 rows, 0.999 s" in page and "position_m" in page
+    force_n = part.sensor_force_n[:, 1]
+    assert f"<tr><th>cable2</th><td>{force_n.min():.4g} … {force_n.max():.4g}</td>" in page
+    nothing = fric.Log.from_arrays(
+        cable_names=["<b>"], stamp_nanos=[0], sensor_force_n=[[np.nan]], length_m=[[np.nan]], speed_m_per_s=[[np.nan]]
+    )
+    assert "signals: none" in nothing._repr_html_() and "<th>&lt;b&gt;</th></tr>" in nothing._repr_html_()
+    assert "0 rows, 0.000 s" in log[1e6:]._repr_html_()
+
+
 @pytest.mark.parametrize("library", ["polars", "pandas"])
 def test_logs_become_data_frames(log, library, monkeypatch):
     frame = getattr(log, f"to_{library}")()

@@ -168,6 +168,11 @@ impl Log {
         }
     }
 
+    /// The log as a table of its cables, for notebooks.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("fric._frames")?.call_method1("table", (slf,))
+    }
+
     /// Whether the log has a signal of this name.
     fn __contains__(&self, py: Python<'_>, name: &str) -> Outcome<bool> {
         Ok(self.signals(py)?.contains(&name))
