@@ -1,6 +1,7 @@
 //! Spectral lines of a residual: hum, for instance from the mains.
 //!
-//! A line stands out from its neighbours by many times their median, everywhere in the log; what a moving cable does is broad.
+//! A line stands out from its neighbours by many times their median, everywhere in the log; what a moving cable does is broad. What oscillates now and
+//! then, such as a ripple of the way at each of a few speeds, is no line: hum does not stop.
 //!
 //! The phase of a line follows the time, even across lost samples. It starts anew after a long pause and with each log.
 
@@ -18,6 +19,11 @@ const FEWEST_TURNS: usize = 8;
 const MOST_LINES: usize = 8;
 /// And the least share of the noise's power that one has to have.
 pub const LEAST_SHARE: f64 = 0.01;
+
+/// Length of the windows over which the power of a line is compared, in rows, and the least ratio of its median to its mean. What is there in less than
+/// half of the windows has a median of nearly 0; hum that is twice as high in two fifths of a log has 0.45.
+const WINDOW: usize = STRETCH / 4;
+const LEAST_MEDIAN_RATIO: f64 = 0.25;
 
 /// A sine of a fixed frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,9 +88,26 @@ pub fn lines(residual: &[f64], times: &Times, signals: &[Together<'_>]) -> Vec<L
     if !lines.is_empty() {
         let frequencies: Vec<f64> = lines.iter().map(|line: &Line| line.frequency_hz).collect();
         let mut of_motion = have_line(&frequencies, signals, times).into_iter();
-        lines.retain(|_| !of_motion.next().unwrap_or(false));
+        lines.retain(|line| !of_motion.next().unwrap_or(false) && goes_on(line.frequency_hz, residual, times));
     }
     lines
+}
+
+/// Whether an oscillation of a frequency goes on throughout the log. One with fewer than [`FEWEST_TURNS`] in a window is taken to do so.
+fn goes_on(frequency_hz: f64, residual: &[f64], times: &Times) -> bool {
+    let windows =
+        times.runs.iter().flat_map(|run| run.clone().step_by(WINDOW).map(|start| start..(start + WINDOW).min(run.end)));
+    let wave =
+        |rows: Range<usize>| project_run(residual.get(rows.clone()).unwrap_or_default(), frequency_hz, times, &rows);
+    // Half a window is missing at most: a shorter one has more noise.
+    let mut powers: Vec<f64> = windows
+        .map(wave)
+        .filter(|wave| 2.0 * wave.count > WINDOW as f64)
+        .map(|wave| wave.sine * wave.sine + wave.cosine * wave.cosine)
+        .collect();
+    powers.sort_unstable_by(f64::total_cmp);
+    let mean = powers.iter().sum::<f64>() / powers.len() as f64;
+    powers.get(powers.len() / 2).is_none_or(|median| *median >= LEAST_MEDIAN_RATIO * mean)
 }
 
 fn strongest(residual: &[f64], times: &Times) -> Option<Line> {
@@ -241,6 +264,25 @@ mod tests {
         assert!((found[0].frequency_hz - 50.0).abs() < 1e-2);
         // A line in one sensor alone may be that sensor's own hum.
         assert_eq!(lines(&residual, &of_log, &[vec![signal(&motion), signal(&noise(6))]]).len(), 2);
+    }
+
+    /// A hum that stops for three of five seconds is something else. One whose frequency wanders as that of the mains does is a hum.
+    #[test]
+    fn hum_does_not_stop() {
+        let mut now_and_then = noise(11);
+        let mut of_mains = noise(12);
+        let mut turns = 0.0;
+        for (cycle, (one, other)) in now_and_then.iter_mut().zip(&mut of_mains).enumerate() {
+            #[expect(clippy::cast_precision_loss, reason = "a small count")]
+            let time_s = cycle as f64 * 1e-3;
+            *one += if time_s % 5.0 < 2.0 { (TAU * 50.0 * time_s).sin() } else { 0.0 };
+            turns += 1e-3 * (50.0 + 0.02 * (TAU * time_s / 30.0).sin());
+            *other += (TAU * turns).sin();
+        }
+        let of_log = times(now_and_then.len());
+        assert_eq!(lines(&now_and_then, &of_log, &[]), []);
+        assert!(lines(&of_mains, &of_log, &[]).iter().all(|line| (line.frequency_hz - 50.0).abs() < 0.1));
+        assert!(!lines(&of_mains, &of_log, &[]).is_empty());
     }
 
     #[test]
