@@ -20,9 +20,11 @@ const MOST_LINES: usize = 8;
 /// And the least share of the noise's power that one has to have.
 pub const LEAST_SHARE: f64 = 0.01;
 
-/// Length of the windows over which the power of a line is compared, in rows, and the least ratio of its median to its mean. What is there in less than
+/// Length of the windows over which the power of a line is compared, in rows; the number of samples that a window needs, since with fewer it has more
+/// noise; and the least ratio of the median of the power to its mean. What is there in less than
 /// half of the windows has a median of nearly 0; hum that is twice as high in two fifths of a log has 0.45.
 const WINDOW: usize = STRETCH / 4;
+const FEWEST_IN_WINDOW: f64 = 512.0;
 const LEAST_MEDIAN_RATIO: f64 = 0.25;
 
 /// A sine of a fixed frequency.
@@ -99,13 +101,13 @@ fn goes_on(frequency_hz: f64, residual: &[f64], times: &Times) -> bool {
         times.runs.iter().flat_map(|run| run.clone().step_by(WINDOW).map(|start| start..(start + WINDOW).min(run.end)));
     let wave =
         |rows: Range<usize>| project_run(residual.get(rows.clone()).unwrap_or_default(), frequency_hz, times, &rows);
-    // Half a window is missing at most: a shorter one has more noise.
     let mut powers: Vec<f64> = windows
         .map(wave)
-        .filter(|wave| 2.0 * wave.count > WINDOW as f64)
+        .filter(|wave| wave.count > FEWEST_IN_WINDOW)
         .map(|wave| wave.sine * wave.sine + wave.cosine * wave.cosine)
         .collect();
     powers.sort_unstable_by(f64::total_cmp);
+    #[expect(clippy::cast_precision_loss, reason = "a count of windows")]
     let mean = powers.iter().sum::<f64>() / powers.len() as f64;
     powers.get(powers.len() / 2).is_none_or(|median| *median >= LEAST_MEDIAN_RATIO * mean)
 }
