@@ -3,9 +3,10 @@
 //! Where a force sensor's curve is bent, say, a gain, an offset and a nonlinear load explain nearly all of it together, each
 //! with strong evidence, and none of them is there. So a few plain laws are tried as rivals, each as one more column of the
 //! least-squares problem beside what the named effects add. If it makes names superfluous, and what is left explains as much as all names did, these names stand in
-//! for it, and are set aside. Where the law is that of an effect, this has its turn then. A jump of the sensor or
-//! of the friction is that of none.
+//! for it, and are set aside. Where the law is that of an effect, this has its turn then. One jump or two of the sensor or
+//! of the friction are that of none.
 
+use std::ops::Range;
 use std::rc::Rc;
 
 use fric_core::effects::Effect;
@@ -81,10 +82,10 @@ pub fn best_rival(
     }
     let mut laws = laws(bench, bench.evaluated(&of_friction));
     laws.retain(|law| law.of.is_none_or(|of| !kinds.contains(&of)));
-    // Whatever has a name may be one jump, of the sensor's zero or of the friction, or the damping of the contacts.
+    // Whatever has a name may be a jump or two, of the sensor's zero or of the friction, or the damping of the contacts.
     for ((_, neutral), without) in effects.iter().zip(&without) {
-        laws.push(jump(|| without.residuals_n(), |_| 1.0));
-        laws.push(jump(|| without.residuals_n(), |cycle| without.added_n(cycle)));
+        laws.extend(jumps(without.residuals_n(), |_| 1.0));
+        laws.extend(jumps(without.residuals_n(), |cycle| without.added_n(cycle)));
         laws.extend(contact_damping(bench, neutral, without));
     }
     let names: Vec<&'static str> = laws.iter().map(|law| law.signal).collect();
@@ -176,29 +177,60 @@ impl<'a> Law<'a> {
     }
 }
 
-/// A signal that sets in at once, where that makes most of a residual; NaN where there is no sample.
-fn jump<'a, R: Iterator<Item = f64>>(residuals_n: impl Fn() -> R, signal: impl Fn(usize) -> f64 + 'a) -> Law<'a> {
-    let sum_up = |to: &mut [f64; 2], residual_n: f64, signal: f64| {
-        if residual_n.is_finite() && signal.is_finite() {
-            to[0] += residual_n * signal;
-            to[1] += signal * signal;
+/// Sums of the products of a residual and a signal, and of the signal's squares, up to each cycle, over the samples that have both.
+struct Sums(Vec<[f64; 2]>);
+
+impl Sums {
+    fn new(residuals_n: impl Iterator<Item = f64>, signal: impl Fn(usize) -> f64) -> Self {
+        let (mut sums, mut sum) = (vec![[0.0; 2]], [0.0; 2]);
+        for (cycle, residual_n) in residuals_n.enumerate() {
+            let signal = signal(cycle);
+            if residual_n.is_finite() && signal.is_finite() {
+                sum = [sum[0] + residual_n * signal, sum[1] + signal * signal];
+            }
+            sums.push(sum);
         }
-    };
-    let (mut all, mut cycle_count) = ([0.0; 2], 0);
-    for (cycle, residual_n) in residuals_n().enumerate() {
-        sum_up(&mut all, residual_n, signal(cycle));
-        cycle_count = cycle + 1;
+        Self(sums)
     }
-    let (mut before, mut best, mut start) = ([0.0; 2], 0.0, cycle_count);
-    for (cycle, residual_n) in residuals_n().enumerate() {
-        let after = [all[0] - before[0], all[1] - before[1]];
-        let explained = [before, after].map(|[product, square]| product * product / square).iter().sum::<f64>();
-        if explained > best {
-            (best, start) = (explained, cycle);
-        }
-        sum_up(&mut before, residual_n, signal(cycle));
+
+    /// Returns the factor of the signal that explains most of the residual in these cycles, and how much it explains.
+    fn level(&self, cycles: &Range<usize>) -> (f64, f64) {
+        let ([product_to, square_to], [product_from, square_from]) = (self.0[cycles.end], self.0[cycles.start]);
+        let (product, square) = (product_to - product_from, square_to - square_from);
+        if square > 0.0 { (product / square, product * product / square) } else { (0.0, 0.0) }
     }
-    Law::by_cycle(("time", None), cycle_count, move |cycle| if cycle < start { 0.0 } else { signal(cycle) })
+
+    /// Returns the cycle at which a step between two levels explains most, and how much more than one level.
+    fn step(&self, cycles: &Range<usize>) -> (usize, f64) {
+        let whole = self.level(cycles).1;
+        let explained = |at: usize| self.level(&(cycles.start..at)).1 + self.level(&(at..cycles.end)).1 - whole;
+        let steps = (cycles.start + 1..cycles.end).map(|at| (at, explained(at)));
+        steps.max_by(|(_, one), (_, other)| one.total_cmp(other)).unwrap_or((cycles.end, 0.0))
+    }
+}
+
+/// A signal that jumps from one level to the next once, and one that does so twice, where that explains most of a residual; NaN where there is no
+/// sample. A drift is no jump: of a residual that grows evenly two jumps leave a ninth.
+fn jumps<'a>(residuals_n: impl Iterator<Item = f64>, signal: impl Fn(usize) -> f64 + Clone + 'a) -> [Law<'a>; 2] {
+    let sums = Sums::new(residuals_n, &signal);
+    let cycle_count = sums.0.len() - 1;
+    let (first, _) = sums.step(&(0..cycle_count));
+    let (second, _) = [0..first, first..cycle_count]
+        .iter()
+        .map(|part| sums.step(part))
+        .max_by(|(_, one), (_, other)| one.total_cmp(other))
+        .unwrap_or((cycle_count, 0.0));
+    [vec![first], vec![first.min(second), first.max(second)]].map(|starts| {
+        let ends = starts.iter().copied().chain([cycle_count]);
+        let parts: Vec<Range<usize>> =
+            [0].into_iter().chain(starts.clone()).zip(ends).map(|(from, to)| from..to).collect();
+        let levels: Vec<(usize, f64)> = parts.iter().map(|part| (part.end, sums.level(part).0)).collect();
+        let signal = signal.clone();
+        Law::by_cycle(("time", None), cycle_count, move |cycle| {
+            let level = levels.iter().find(|(end, _)| cycle < *end).map_or(0.0, |(_, level)| *level);
+            level * signal(cycle)
+        })
+    })
 }
 
 /// The laws: sensor and reference that follow late, a bent sensor, a drag of turbulence, what warms up, of the sensor and of the friction, and a cable
@@ -269,21 +301,27 @@ fn rate(record: &CableRecord<'_>, signal: impl Fn(usize) -> f64, cycles: usize, 
 
 #[cfg(test)]
 mod tests {
-    use super::jump;
+    use super::jumps;
 
     #[test]
-    fn a_jump_sets_in_where_it_explains_most() {
-        // What is there from the start, and samples that are missing, do not hide it.
+    fn jumps_are_where_they_explain_most() {
+        // Samples that are missing do not hide them.
         let signal: Vec<f64> = (0..400).map(|place| 1.0 + 0.5 * f64::from(place % 7)).collect();
-        let residual = |(place, signal): (usize, &f64)| match place {
-            0..90 => 0.2 * signal,
-            100..120 => f64::NAN,
-            _ => -0.1 * signal,
+        let level = |place: usize| match place {
+            0..90 => 0.2,
+            90..250 => -0.1,
+            _ => 0.4,
         };
-        let residual_n: Vec<f64> = signal.iter().enumerate().map(residual).collect();
-        let law = jump(|| residual_n.iter().copied(), |cycle| signal[cycle]);
-        let expected: Vec<f64> =
-            signal.iter().enumerate().map(|(place, of)| if place < 90 { 0.0 } else { *of }).collect();
-        assert_eq!((law.of, (law.numbers)().collect::<Vec<f64>>()), (None, expected));
+        let residual = |place: usize| if (100..120).contains(&place) { f64::NAN } else { level(place) * signal[place] };
+        let [one, two] = jumps((0..400).map(residual), |cycle| signal[cycle]);
+        for (place, number) in (two.numbers)().enumerate() {
+            assert!((number - level(place) * signal[place]).abs() < 1e-12, "{place}");
+        }
+        // The greater one, from the mean of what is before.
+        let numbers: Vec<f64> = (one.numbers)().collect();
+        let levels: Vec<f64> = numbers.iter().zip(&signal).map(|(number, signal)| number / signal).collect();
+        assert!(levels[..250].iter().all(|level| (level - levels[0]).abs() < 1e-12 && (-0.1..0.2).contains(level)));
+        assert!(levels[250..].iter().all(|level| (level - 0.4).abs() < 1e-12));
+        assert_eq!((one.of, two.of, levels.len()), (None, None, 400));
     }
 }
