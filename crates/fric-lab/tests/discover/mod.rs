@@ -1,5 +1,6 @@
 //! Discovery on logs with known effects hidden in them; the whole sweep is `benches/discover.rs`.
 
+mod contacts;
 mod drive;
 mod empirical;
 mod faulty;

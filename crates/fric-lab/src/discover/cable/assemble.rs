@@ -34,8 +34,7 @@ impl CableLog<'_> {
         }
         let bench = self.bench(self.counts);
         let places: Vec<Place> = stretch.iter().chain(&rest.places).cloned().collect();
-        let model = workbench::Model { values: fitted.values, free: fitted.parameters.clone() };
-        let Some(table) = table(&bench, &model, rest.noise_n, &places) else { return Ok(None) };
+        let Some(table) = table(&bench, &fitted.model(), rest.noise_n, &places) else { return Ok(None) };
         // Coupling from a neighbouring cable is not this cable's effect, however well a table over this cable's conditions fits it.
         let neighbours = neighbours_of(&bench.residuals_n(&fitted.values), task)?;
         let of_neighbour = neighbours.first().map_or(0.0, |neighbour| neighbour.correlation * neighbour.correlation);
@@ -175,7 +174,7 @@ impl CableLog<'_> {
         }
         let of_table = unnamed.and_then(|values| {
             let bench = self.bench(self.counts);
-            self.rest(&bench, bench.residuals_n(&values), rest.noise_n)
+            self.rest(&bench, &workbench::Model { values, free: after.fitted.clone() }, rest.noise_n)
         });
         let rms_n = unnamed.map_or(after.held_out_n, |values| held_out_of(&values)).rms().unwrap_or(f64::NAN);
         let rms_n = (rms_n * rms_n - rest.noise_n * rest.noise_n).max(0.0).sqrt();

@@ -8,6 +8,7 @@ use super::given::acts;
 use super::{BELIEVED_RATIO, CableLog};
 use crate::discover::effort::Effort;
 use crate::discover::naming::{Naming, Search};
+use crate::discover::rest::contacts::share_of_contacts;
 use crate::discover::rest::places::Place;
 use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
 use crate::discover::rest::{WORTH, wander};
@@ -15,6 +16,7 @@ use crate::discover::workbench::{self, Trial, Workbench};
 use crate::fit::{FitOptions, HALF_INTERVAL, Parameter};
 use crate::samples::noise::white_noise;
 use crate::samples::selection::Standing;
+use crate::search::solve::contradicts;
 
 /// Maximum number of passes over a cable. Each pass starts from what the previous one found.
 const MOST_PASSES: usize = 3;
@@ -47,6 +49,12 @@ pub(super) struct Fitted {
     pub(super) values: Values,
     pub(super) parameters: Vec<Parameter>,
     pub(super) covariance: DMatrix<f64>,
+}
+
+impl Fitted {
+    pub(super) fn model(&self) -> workbench::Model {
+        workbench::Model { values: self.values, free: self.parameters.clone() }
+    }
 }
 
 /// What a model leaves unexplained.
@@ -107,8 +115,7 @@ impl CableLog<'_> {
             naming = if is_new { again } else { naming.followed_by(beyond) };
             fitted = self.fitted(counts, &naming.model, noise_n);
         }
-        let residual_n = bench.residuals_n(&fitted.values);
-        let rest = self.rest(&bench, residual_n, self.least_n(&base))?;
+        let rest = self.rest(&bench, &fitted.model(), self.least_n(&base))?;
         Some(Outcome { counts: counts.to_vec(), effort, base, naming, fitted, rest, stretch: None })
     }
 
@@ -120,7 +127,7 @@ impl CableLog<'_> {
         fitted: &Fitted,
         found: &[Effect],
     ) -> Option<Naming> {
-        let base = bench.try_one(&workbench::Model { values: fitted.values, free: fitted.parameters.clone() });
+        let base = bench.try_one(&fitted.model());
         let noise_n = self.noise_n(bench, &base)?;
         Some(search.beyond(found, &base, noise_n, self.around(&base, noise_n)).run(&[]))
     }
@@ -136,17 +143,28 @@ impl CableLog<'_> {
         BELIEVED_RATIO * self.around(model, 0.0).tension_n
     }
 
-    /// Assesses the residual of a model, N.
-    pub(super) fn rest(&self, bench: &Workbench<'_>, residual_n: Vec<f64>, least_n: f64) -> Option<Rest> {
+    /// Assesses what a model leaves.
+    pub(super) fn rest(&self, bench: &Workbench<'_>, model: &workbench::Model, least_n: f64) -> Option<Rest> {
+        let residual_n = bench.residuals_n(&model.values);
         let noise_n = white_noise(&bench.measured_of(&residual_n))?.max(least_n);
         let excess = self.excess(&residual_n, noise_n);
         let places = excess.places(self.conditions);
         let share = excess.share();
         let is_small = share <= WORTH;
         let stretch = if is_small { None } else { stretch_of_cable(&excess, self.conditions) };
-        let wander = if is_small || stretch.is_some() { 0.0 } else { wander(&excess, &places) };
-        let is_noise = share - wander <= WORTH * (1.0 + wander);
-        Some(Rest { noise_n, wander_n: noise_n * wander.sqrt(), is_noise, places, stretch, residual_n })
+        let is_noise = |wander: f64| share - wander <= WORTH * (1.0 + wander);
+        let mut wander = if is_small || stretch.is_some() { 0.0 } else { wander(&excess, &places) };
+        if wander > 0.0 && is_noise(wander) {
+            wander = wander.min(share * (1.0 - share_of_contacts(bench, model, &excess)));
+        }
+        Some(Rest {
+            noise_n,
+            wander_n: noise_n * wander.sqrt(),
+            is_noise: is_noise(wander),
+            places,
+            stretch,
+            residual_n,
+        })
     }
 
     /// Fits the model with everything found to all samples that count, as an identification of the extended robot file does. Friction that is neither
@@ -177,7 +195,7 @@ impl CableLog<'_> {
             let mut parameters = FitOptions::default().shared(&self.record.with_params(&params));
             parameters.retain(|parameter| is_known(parameter) || also(parameter));
             let fitted = solved(&model.values, parameters.clone())?;
-            // What these samples do not determine stays in the file as it was. The model that is judged has it so too.
+            // What these samples do not determine stays in the file as it was, unless they contradict that. The model that is judged has it so too.
             let is_held = |parameter: &&Parameter| !fitted.parameters.contains(parameter);
             let (mut start, mut is_changed) = (fitted.values, false);
             for place in of_file.iter().filter(is_held).map(Parameter::place) {
@@ -188,7 +206,9 @@ impl CableLog<'_> {
                 return Some(fitted);
             }
             parameters.retain(|parameter| fitted.parameters.contains(parameter) || !of_file.contains(parameter));
-            solved(&start, parameters)
+            let held = solved(&start, parameters)?;
+            let problem = self.bench(counts).problem(&[], None);
+            Some(if contradicts(&problem, &[held.values], &problem, &[fitted.values]) { fitted } else { held })
         };
         let has_chance_offset = |fitted: &Fitted| {
             let place = fitted.parameters.iter().position(|parameter| parameter.place() == OFFSET);

@@ -3,18 +3,19 @@
 //! Sensor drift is noise. It continues while the cable rests and is spread over the log. A rest is not drift if it changes with the motion or the
 //! load, is a function of a condition, is concentrated in a narrow stretch of time, or is many times the noise.
 
+pub mod contacts;
 pub mod empirical;
 pub mod neighbours;
+pub mod past;
 pub mod places;
 pub mod stretch;
 
 use std::ops::Range;
 
-use fric_core::parameters::{MU, SIGMA};
-
+use self::past::share_of_past;
 use self::places::{Excess, Place};
 use crate::candidates::ripple::ripple_power;
-use crate::fit::{CableRecord, Row};
+use crate::fit::Row;
 
 /// Maximum fraction of a drift that lies in one tenth of the log.
 const MOST_IN_TENTH: f64 = 0.6;
@@ -31,14 +32,6 @@ const CHANGE_S: f64 = 0.1;
 const FEWEST_QUIET: usize = 16;
 /// Changes with and without motion count as equal up to this many standard deviations of chance.
 const LEAST_RANKS_APART: f64 = 3.0;
-/// Time constants with which a creeping cable or mount follows its load, s. Two lags that differ by a factor of two are hardly told apart, so three,
-/// each four times the one before, do for a second to half a minute.
-pub const CREEP_S: [f64; 3] = [1.0, 4.0, 16.0];
-/// Widths of hysteresis over the load, as fractions of its standard deviation. For a sensor with hystereses of several widths, with 0.1 to 0.8 of it, half
-/// of the deviation explains 93 % of the rest, a quarter 82 %, all of it 65 %.
-const WIDTH_RATIOS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
-/// Number of equal shifts of the residual against a signal through the log, which give the chance level.
-const SHIFTS: usize = 80;
 /// Minimum excess, as a fraction of the noise variance, that needs an explanation. The rms is then 5 % above the floor.
 pub const WORTH: f64 = 0.1;
 
@@ -49,106 +42,12 @@ pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
         && places.is_empty()
         && share_of_tenth(excess) < MOST_IN_TENTH
         && share_of_wave(excess) < MOST_WAVE;
-    if is_wander { excess.share() * (1.0 - share_of_motion(excess).max(share_of_past(excess))) } else { 0.0 }
-}
-
-/// Returns the fraction of the excess that follows what the load has been; zero where this may be chance.
-///
-/// Such a rest goes on while the cable rests, as a drift does, and no condition of the moment tells it. Two kinds are compared:
-///
-/// - Creep: a cable that creeps under its load `F` by `x`, with `τ·dx/dt = F − x`, moves its contacts, which store friction in proportion; a motion by
-///   the presliding distance `d` makes them forget it. So with the way `l` of the cable the stored part is `dc = dx − c·|dl|/d`.
-/// - Hysteresis, as a sensor has it: the load's last changes up to a width. Sensor and reference must both show it, because a drift of either is part of
-///   its own past.
-fn share_of_past(excess: &Excess<'_>) -> f64 {
-    let record = excess.record;
-    let over_load = |force_n: &dyn Fn(usize) -> f64| {
-        let deviation_n = deviation((0..record.rows.len()).map(force_n));
-        share_above_chance(excess, &WIDTH_RATIOS.map(|ratio| stopped(record, force_n, ratio * deviation_n)))
-    };
-    let sensor_n = |cycle: usize| record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-    let load = over_load(&sensor_n).min(over_load(&|cycle| record.reference_n(cycle)));
-    load.max(share_above_chance(excess, &CREEP_S.map(|lag_s| crept(record, lag_s).collect())))
-}
-
-/// Returns the standard deviation of the finite numbers.
-fn deviation(numbers: impl Iterator<Item = f64>) -> f64 {
-    let [mut count, mut sum, mut squares] = [0.0_f64; 3];
-    for number in numbers.filter(|number| number.is_finite()) {
-        count += 1.0;
-        sum += number;
-        squares += number * number;
+    if !is_wander {
+        return 0.0;
     }
-    (squares / count - (sum / count).powi(2)).max(0.0).sqrt()
-}
-
-/// Returns the greatest fraction of the excess that is a multiple of one of these signals; zero where it may be chance. The chance level is the greatest
-/// fraction for residuals shifted in time against the signals.
-fn share_above_chance(excess: &Excess<'_>, signals: &[Vec<f64>]) -> f64 {
-    let count = excess.residual_n.len();
-    let greatest = |shift: usize| {
-        let residual_n = || excess.residual_n.iter().cycle().skip(shift * count / SHIFTS).take(count);
-        signals.iter().map(|signal| common_squares(residual_n(), signal)).fold(0.0, f64::max)
-    };
-    let squares = greatest(0);
-    if (1..SHIFTS).any(|shift| greatest(shift) >= squares) { 0.0 } else { (squares / excess.sum()).min(1.0) }
-}
-
-/// Returns how far a quantity has moved before each cycle, at most by a width from where it turned last: the stop operator (A. Visintin, *Differential
-/// Models of Hysteresis*, Springer 1994, III.2). The cycle itself is left out, because its noise is in the residual too.
-fn stopped(record: &CableRecord<'_>, value: &dyn Fn(usize) -> f64, width: f64) -> Vec<f64> {
-    let mut stopped = Vec::with_capacity(record.rows.len());
-    for (start, rows) in record.logs() {
-        let (mut moved, mut last) = (0.0_f64, f64::NAN);
-        for cycle in start..start + rows.len() {
-            stopped.push(moved);
-            let now = value(cycle);
-            if now.is_finite() {
-                moved = if last.is_finite() { (moved + now - last).clamp(-width, width) } else { 0.0 };
-                last = now;
-            }
-        }
-    }
-    stopped
-}
-
-/// Returns the part of the sensor force that contacts have stored from a creep with this time constant, N in each cycle: see [`share_of_past`].
-pub fn crept<'a>(record: &CableRecord<'a>, lag_s: f64) -> impl Iterator<Item = f64> + use<'a> {
-    let values = record.params.values();
-    let presliding_m_per_n = record.params.memory_m_per_n(values[MU], values[SIGMA]);
-    let follows = -libm::expm1(-record.interval_s / lag_s);
-    record.logs().flat_map(move |(_, rows)| {
-        let (mut followed_n, mut stored_n) = (f64::NAN, 0.0);
-        rows.iter().map(move |row| {
-            let force_n = row.signals.sensor_force_n;
-            if !followed_n.is_finite() {
-                followed_n = force_n;
-            }
-            if force_n.is_finite() {
-                let step_n = follows * (force_n - followed_n);
-                let way_m = row.signals.displacement_m.abs();
-                followed_n += step_n;
-                stored_n += step_n;
-                if way_m > 0.0 {
-                    stored_n *= libm::exp(-way_m / (presliding_m_per_n * force_n).max(f64::MIN_POSITIVE));
-                }
-            }
-            stored_n
-        })
-    })
-}
-
-/// Returns how much of a residual's squares, N², is a multiple of a signal, apart from the means of both, over the samples that have a residual.
-fn common_squares<'a>(residual_n: impl Iterator<Item = &'a f64>, signal: &[f64]) -> f64 {
-    let mut sums = [0.0; 5];
-    for (residual_n, signal) in residual_n.zip(signal).filter(|(residual_n, _)| residual_n.is_finite()) {
-        let of_sample = [1.0, *residual_n, *signal, residual_n * signal, signal * signal];
-        sums.iter_mut().zip(of_sample).for_each(|(sum, of_sample)| *sum += of_sample);
-    }
-    let [count, residuals, signals, products, squares] = sums;
-    let covariance = products - residuals * signals / count;
-    let variance = squares - signals * signals / count;
-    if variance > 0.0 { covariance * covariance / variance } else { 0.0 }
+    let [quick, quick_of_motion] = quick_shares(excess);
+    let slow = (1.0 - quick) * (1.0 - share_of_motion(excess).max(share_of_past(excess)));
+    excess.share() * (slow + quick * (1.0 - quick_of_motion))
 }
 
 /// Returns the fraction of a residual's slow changes that comes with motion of the cable or a change of its load.
@@ -158,18 +57,8 @@ fn common_squares<'a>(residual_n: impl Iterator<Item = &'a f64>, signal: &[f64])
 /// the mean square in these windows gives the drift. A difference that may be chance counts as none: a Mann-Whitney test compares the ranks of both
 /// kinds of windows.
 fn share_of_motion(excess: &Excess<'_>) -> f64 {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-    let length = (CHANGE_S / excess.record.interval_s).ceil().max(1.0) as usize;
     let mut changes: Vec<Change> = Vec::new();
-    for (start, rows) in excess.record.logs() {
-        let windows: Vec<Window> = rows
-            .chunks_exact(length)
-            .enumerate()
-            .map(|(place, rows)| {
-                let from = start + place * length;
-                Window::of(rows, excess.residual_n.get(from..from + length).unwrap_or_default())
-            })
-            .collect();
+    for windows in windows(excess) {
         changes.extend(windows.windows(2).filter_map(|pair| {
             let [one, next] = pair else { return None };
             let noise = excess.noise_n * excess.noise_n * (1.0 / one.count + 1.0 / next.count);
@@ -193,18 +82,56 @@ fn share_of_motion(excess: &Excess<'_>) -> f64 {
     all.sort_by(|one, other| one.load_n.abs().total_cmp(&other.load_n.abs()));
     let loaded = all.split_off((all.len() / 4).max(FEWEST_QUIET).min(all.len()));
     let (quiet, busy) = (all, [moves, loaded].concat());
-    #[expect(clippy::cast_precision_loss, reason = "counts of windows")]
-    let mean = |of: &[&Change]| of.iter().map(|change| change.square).sum::<f64>() / of.len() as f64;
-    let (of_quiet, of_all) = (mean(&quiet), mean(&changes.iter().collect::<Vec<_>>()));
+    let squares = |of: &[&Change]| -> Vec<f64> { of.iter().map(|change| change.square).collect() };
+    let (quiet, busy) = (squares(&quiet), squares(&busy));
+    let (of_quiet, of_all) = (mean(&quiet), mean(&changes.iter().map(|change| change.square).collect::<Vec<_>>()));
     if !(ranks_apart(&quiet, &busy) > LEAST_RANKS_APART && of_all > 0.0) {
         return with_motion;
     }
     (1.0 - of_quiet.max(0.0) / of_all).clamp(with_motion, 1.0)
 }
 
+/// Returns the fraction of the excess that changes within windows of [`CHANGE_S`], and the fraction of this that comes with motion. The noise of an
+/// amplifier that smooths is quick too, but as large at rest as in motion.
+fn quick_shares(excess: &Excess<'_>) -> [f64; 2] {
+    let logs = windows(excess);
+    let mut all: Vec<&Window> = logs.iter().flatten().filter(|window| window.quick.is_finite()).collect();
+    all.sort_by(|one, other| one.way_m.total_cmp(&other.way_m));
+    let busy = all.split_off((all.len() / 4).max(FEWEST_QUIET).min(all.len()));
+    let squares = |of: &[&Window]| -> Vec<f64> { of.iter().map(|window| window.quick).collect() };
+    let (quiet, busy) = (squares(&all), squares(&busy));
+    let whole = [&quiet[..], &busy].concat();
+    let share = (whole.iter().sum::<f64>() / excess.sum()).clamp(0.0, 1.0);
+    let is_of_motion = ranks_apart(&quiet, &busy) > LEAST_RANKS_APART && share > 0.0;
+    [share, if is_of_motion { (1.0 - mean(&quiet).max(0.0) / mean(&whole)).clamp(0.0, 1.0) } else { 0.0 }]
+}
+
+/// Returns the windows of [`CHANGE_S`] of each log.
+fn windows(excess: &Excess<'_>) -> Vec<Vec<Window>> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
+    let length = (CHANGE_S / excess.record.interval_s).ceil().max(1.0) as usize;
+    let of_log = |(start, rows): (usize, &[Row])| {
+        let of_chunk = |(place, rows): (usize, &[Row])| {
+            let from = start + place * length;
+            Window::of(rows, excess.residual_n.get(from..from + length).unwrap_or_default(), excess.noise_n)
+        };
+        rows.chunks_exact(length).enumerate().map(of_chunk).collect()
+    };
+    excess.record.logs().map(of_log).collect()
+}
+
+/// Returns the mean of some numbers.
+fn mean(of: &[f64]) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a count of windows")]
+    let count = of.len() as f64;
+    of.iter().sum::<f64>() / count
+}
+
 /// A short window of a log.
 struct Window {
     mean_n: f64,
+    /// Squares about the mean less those of white noise, N².
+    quick: f64,
     count: f64,
     way_m: f64,
     length_m: f64,
@@ -213,12 +140,14 @@ struct Window {
 
 impl Window {
     /// Creates the window from rows with their residual. It has no mean if half of the residual is missing.
-    fn of(rows: &[Row], residual_n: &[f64]) -> Self {
+    fn of(rows: &[Row], residual_n: &[f64], noise_n: f64) -> Self {
         let finite = || residual_n.iter().filter(|number| number.is_finite());
         #[expect(clippy::cast_precision_loss, reason = "small counts")]
         let (count, all) = (finite().count() as f64, rows.len() as f64);
+        let mean_n = if 2.0 * count > all { finite().sum::<f64>() / count } else { f64::NAN };
         Self {
-            mean_n: if 2.0 * count > all { finite().sum::<f64>() / count } else { f64::NAN },
+            mean_n,
+            quick: finite().map(|number| (number - mean_n).powi(2)).sum::<f64>() - (count - 1.0) * noise_n * noise_n,
             count,
             way_m: rows.iter().map(|row| row.signals.displacement_m.abs()).sum(),
             length_m: rows.iter().map(|row| row.signals.length_m).sum::<f64>() / all,
@@ -253,10 +182,10 @@ fn correlated_share(changes: &[&Change], other: fn(&Change) -> f64) -> f64 {
     if share * count > LEAST_RANKS_APART * LEAST_RANKS_APART { share } else { 0.0 }
 }
 
-/// Returns by how many standard deviations of chance the changes of the first kind rank below those of the second.
-fn ranks_apart(low: &[&Change], high: &[&Change]) -> f64 {
-    let mut all: Vec<(f64, bool)> = low.iter().map(|change| (change.square, true)).collect();
-    all.extend(high.iter().map(|change| (change.square, false)));
+/// Returns by how many standard deviations of chance the numbers of the first kind rank below those of the second.
+fn ranks_apart(low: &[f64], high: &[f64]) -> f64 {
+    let mut all: Vec<(f64, bool)> = low.iter().map(|number| (*number, true)).collect();
+    all.extend(high.iter().map(|number| (*number, false)));
     all.sort_by(|one, other| one.0.total_cmp(&other.0));
     #[expect(clippy::cast_precision_loss, reason = "counts of windows")]
     let (of_low, of_high) = (low.len() as f64, high.len() as f64);

@@ -155,7 +155,7 @@ pub fn vibration(residual_n: &[f64], times: &Times, way: &[Way], signals: &[Toge
     let found = loudest(&spectrum, times)?;
     let is_worth_it = found.rms_n().powi(2) > LEAST_SHARE * mean_square(residual_n);
     let is_of_motion = || have_line(&[found.frequency_hz], signals, times).contains(&true);
-    let follows_length = || share_of_length(&found, &found.in_signal(residual_n, times), way) > MOST_OF_LENGTH;
+    let follows_length = || share_of_length(&found, residual_n, way) > MOST_OF_LENGTH;
     (is_worth_it && !is_of_motion() && !follows_length()).then_some(found)
 }
 
@@ -170,39 +170,50 @@ pub fn steady<'a>(lines: &'a [Line], residual_n: &[f64], times: &Times) -> Vec<&
     lines.iter().filter(keeps_phase).collect()
 }
 
-/// Returns the fraction of a vibration that one wave along the cable explains, if its sign is constant or follows the direction of motion.
-fn share_of_length(found: &Vibration, shown_n: &[f64], way: &[Way]) -> f64 {
+/// Returns how much of the residual one wave along the cable explains, as a fraction of the vibration. The wave's amplitude is constant or in proportion to
+/// the speed, and keeps its sign or changes it with the direction of motion. The wave is sought in the residual itself: where the speed changes, a filter as
+/// narrow as the vibration rings and loses the phase.
+fn share_of_length(found: &Vibration, residual_n: &[f64], way: &[Way]) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let stride = (1.0 / (SAMPLES_A_TURN * found.frequency_hz * found.interval_s)).max(1.0) as usize;
-    let few: Vec<(f64, f64, f64)> = shown_n
+    let few: Vec<(f64, &Way)> = residual_n
         .iter()
+        .copied()
         .zip(way)
         .step_by(stride)
-        .map(|(shown_n, way)| (*shown_n, way.length_m, sign(way.speed_m_per_s)))
-        .filter(|(shown_n, length_m, _)| shown_n.is_finite() && length_m.is_finite())
+        .filter(|(residual_n, way)| (residual_n + way.length_m + way.speed_m_per_s).is_finite())
         .collect();
-    let squares: f64 = few.iter().map(|(shown_n, ..)| shown_n * shown_n).sum();
-    let [least_m, most_m] = few.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], (_, length_m, _)| {
-        [least.min(*length_m), most.max(*length_m)]
+    let [least_m, most_m] = few.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], (_, way)| {
+        [least.min(way.length_m), most.max(way.length_m)]
     });
     let fastest = way.iter().map(|way| way.speed_m_per_s.abs()).fold(0.0, f64::max);
     let (range_m, first) = (most_m - least_m, found.frequency_hz / fastest);
     if !(range_m > 0.0 && first.is_finite()) {
         return 0.0;
     }
-    let share = |waves_a_metre: f64| {
-        let mut sums = [Complex::new(0.0, 0.0); 2];
-        for (shown_n, length_m, sign) in &few {
-            let wave = Complex::from_polar(*shown_n, TAU * waves_a_metre * length_m);
-            sums[0] += wave;
-            sums[1] += wave * sign;
+    let amplitudes = |way: &Way| {
+        let speed = way.speed_m_per_s / fastest;
+        [1.0, sign(speed), speed.abs(), speed]
+    };
+    let mut squares = [0.0; 4];
+    for (_, way) in &few {
+        squares.iter_mut().zip(amplitudes(way)).for_each(|(square, amplitude)| *square += amplitude * amplitude);
+    }
+    let explained = |waves_a_metre: f64| {
+        let mut sums = [Complex::new(0.0, 0.0); 4];
+        for (residual_n, way) in &few {
+            let wave = Complex::from_polar(*residual_n, TAU * waves_a_metre * way.length_m);
+            sums.iter_mut().zip(amplitudes(way)).for_each(|(sum, amplitude)| *sum += wave * amplitude);
         }
-        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = few.len() as f64;
-        sums.map(|sum| 2.0 * sum.norm_sqr() / (count * squares)).into_iter().fold(0.0, f64::max)
+        sums.iter().zip(squares).map(|(sum, square)| 2.0 * sum.norm_sqr() / square).fold(0.0, f64::max)
     };
     let waves = std::iter::successors(Some(first), |waves_a_metre| Some(waves_a_metre + 0.5 / range_m));
-    waves.take_while(|waves_a_metre| *waves_a_metre < first / LEAST_SPEED).map(share).fold(0.0, f64::max)
+    let all: Vec<f64> = waves.take_while(|waves_a_metre| *waves_a_metre < first / LEAST_SPEED).map(explained).collect();
+    #[expect(clippy::cast_precision_loss, reason = "counts of samples and waves")]
+    let (count, tried) = (few.len() as f64, all.len() as f64);
+    // The greatest of so many squares of chance, which are spread exponentially, is this many times their mean.
+    let by_chance = tried.ln() * all.iter().sum::<f64>() / tried;
+    (all.into_iter().fold(0.0, f64::max) - by_chance) / (count * found.rms_n().powi(2))
 }
 
 #[cfg(test)]
@@ -314,5 +325,41 @@ mod tests {
         let spectrum = Spectrum::of(&residual, &times()).unwrap();
         assert!(loudest(&spectrum, &times()).is_some());
         assert_eq!(vibration(&residual, &times(), &way, &[]), None);
+    }
+
+    /// The teeth of a pulley: the ripple grows with the speed, and its frequency too, so that it is loud at the frequency of the usual speed.
+    #[test]
+    fn a_ripple_in_proportion_to_the_speed_does_not_vibrate() {
+        let mut residual = noise(31);
+        let mut way = Vec::with_capacity(COUNT);
+        let (mut length_m, mut speed_m_per_s) = (1.0, 0.0_f64);
+        for (place, number) in residual.iter_mut().enumerate() {
+            let stroke = place / 1700;
+            let goal = [0.2, -0.19, 0.21, -0.2, 0.05, -0.06, 0.19, -0.2][stroke % 8];
+            speed_m_per_s += (goal - speed_m_per_s).clamp(-0.002, 0.002);
+            length_m += speed_m_per_s * INTERVAL_S;
+            *number += 8.0 * speed_m_per_s.abs() * (TAU * length_m / 0.005).sin();
+            way.push(Way { length_m, speed_m_per_s });
+        }
+        let spectrum = Spectrum::of(&residual, &times()).unwrap();
+        assert!(loudest(&spectrum, &times()).is_some());
+        assert_eq!(vibration(&residual, &times(), &way, &[]), None);
+    }
+
+    /// A mount that rings whenever a stroke ends is no ripple, though the strokes repeat themselves.
+    #[test]
+    fn a_mount_that_strokes_strike_vibrates() {
+        let shown = ringing(17.0, 0.02, 1.7);
+        let residual: Vec<f64> = noise(32).iter().zip(&shown).map(|(noise, shown)| noise + 3.0 * shown).collect();
+        let mut way = Vec::with_capacity(COUNT);
+        let (mut length_m, mut speed_m_per_s) = (1.0, 0.0_f64);
+        for place in 0..COUNT {
+            let goal = if place / 1700 % 2 == 0 { 0.2 } else { -0.2 };
+            speed_m_per_s += (goal - speed_m_per_s).clamp(-0.002, 0.002);
+            length_m += speed_m_per_s * INTERVAL_S;
+            way.push(Way { length_m, speed_m_per_s });
+        }
+        let found = vibration(&residual, &times(), &way, &[]).unwrap();
+        assert!((found.frequency_hz / 17.0 - 1.0).abs() < 0.01, "{found:?}");
     }
 }
