@@ -28,7 +28,7 @@ pub fn share_of_contacts(bench: &Workbench<'_>, model: &Model, excess: &Excess<'
     let friction = bench.evaluated(&model.values);
     let signals = || -> Signals<'_> {
         let friction_n = |cycle| friction.added_n(cycle);
-        let mut loaded = loaded(&bench.record, model.values, friction_n).enumerate();
+        let mut loaded = loaded(&bench.record, &model.values, friction_n).enumerate();
         let contacts = &contacts;
         Box::new(move |cycle, numbers| {
             numbers.extend(contacts.iter().map(|contact| contact.added_n(cycle)));

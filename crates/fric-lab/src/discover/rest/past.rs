@@ -77,7 +77,7 @@ fn stopped(record: &CableRecord<'_>, value: &dyn Fn(usize) -> f64, width: f64) -
 /// Returns the part of the sensor force that contacts have stored from a creep with this time constant, N in each cycle: see [`share_of_past`].
 pub fn crept<'a>(record: &CableRecord<'a>, lag_s: f64) -> impl Iterator<Item = f64> + use<'a> {
     let follows = -libm::expm1(-record.interval_s / lag_s);
-    stored(record, record.params.values(), move |_, _, ahead_n| [follows * ahead_n; 2])
+    stored(record, &record.params.values(), move |_, _, ahead_n| [follows * ahead_n; 2])
 }
 
 /// Returns the part of the friction that contacts have stored from changes of the load, N in each cycle, if a contact at rest keeps its ratio of friction
@@ -85,7 +85,7 @@ pub fn crept<'a>(record: &CableRecord<'a>, lag_s: f64) -> impl Iterator<Item = f
 /// those of `load_release` let it go where the load falls.
 pub fn loaded<'a, F: Fn(usize) -> f64 + Clone>(
     record: &CableRecord<'a>,
-    values: Values,
+    values: &Values,
     friction_n: F,
 ) -> impl Iterator<Item = f64> + use<'a, F> {
     let of_load = move |cycle, force_n: f64, ahead_n: f64| {
@@ -100,7 +100,7 @@ pub fn loaded<'a, F: Fn(usize) -> f64 + Clone>(
 /// cycle itself stores is left out, because its noise is in the residual too.
 fn stored<'a, S: Fn(usize, f64, f64) -> [f64; 2] + Clone>(
     record: &CableRecord<'a>,
-    values: Values,
+    values: &Values,
     step: S,
 ) -> impl Iterator<Item = f64> + use<'a, S> {
     let presliding_m_per_n = record.params.memory_m_per_n(values[MU], values[SIGMA]);
@@ -114,10 +114,10 @@ fn stored<'a, S: Fn(usize, f64, f64) -> [f64; 2] + Clone>(
             }
             let before_n = stored_n;
             if force_n.is_finite() {
-                let [follows_n, stores_n] = step(start + place, force_n, force_n - followed_n);
+                let [follows_n, adds_n] = step(start + place, force_n, force_n - followed_n);
                 let way_m = row.signals.displacement_m.abs();
                 followed_n += follows_n;
-                stored_n += stores_n;
+                stored_n += adds_n;
                 if way_m > 0.0 {
                     stored_n *= libm::exp(-way_m / (presliding_m_per_n * force_n).max(f64::MIN_POSITIVE));
                 }

@@ -60,7 +60,7 @@ impl<'a> Law<'a> {
 
 /// The laws: sensor and reference that follow late, a bent sensor, a drag of turbulence, contacts that yield one after the other, what warms up, of the
 /// sensor and of the friction, a cable that creeps, and contacts whose friction follows the load.
-pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: Values) -> Vec<Law<'b>> {
+pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: &Values) -> Vec<Law<'b>> {
     let record = bench.record;
     let count = record.rows.len();
     let of = move |cycle: usize, value: fn(&Row) -> f64| record.rows.get(cycle).map_or(f64::NAN, value);
@@ -84,13 +84,13 @@ pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: Values) -> Vec<Law<'b
         ),
     ];
     let end_s = record.rows.iter().map(|row| row.cycle).fold(0.0, f64::max) * record.cycle_s;
-    let contacts = contacts(bench, &friction_values)
+    let contacts = contacts(bench, friction_values)
         .map(|contact| Law::by_cycle(("way_since_reversal", None), count, move |cycle| contact.added_n(cycle)));
     laws.extend(contacts.into_iter().reduce(|mut law, contact| {
         law.columns.extend(contact.columns);
         Law { nearly_ratio: NEARLY, ..law }
     }));
-    let friction = Rc::new(bench.evaluated(&friction_values));
+    let friction = Rc::new(bench.evaluated(friction_values));
     for ratio in TIME_CONSTANT_RATIOS {
         let decay = move |cycle: usize| (-of(cycle, |row| row.cycle) * record.cycle_s / (ratio * end_s)).exp();
         let friction = Rc::clone(&friction);
@@ -106,6 +106,7 @@ pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: Values) -> Vec<Law<'b
         columns: vec![Box::new(move || Box::new(crept(&record, lag_s)))],
     };
     laws.extend(CREEP_S.map(creep));
+    let friction_values = *friction_values;
     laws.push(Law {
         signal: "past_load",
         of: None,
@@ -113,7 +114,7 @@ pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: Values) -> Vec<Law<'b
         nearly_ratio: NEARLY,
         columns: vec![Box::new(move || {
             let friction = Rc::clone(&friction);
-            Box::new(loaded(&record, friction_values, move |cycle| friction.added_n(cycle)))
+            Box::new(loaded(&record, &friction_values, move |cycle| friction.added_n(cycle)))
         })],
     });
     laws

@@ -14,7 +14,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 
 use self::jumps::jumps;
-use self::laws::{Numbers, contact_damping, laws};
+use self::laws::{Law, Numbers, contact_damping, laws};
 use super::NEGLIGIBLE;
 use super::projection::{Columns, Signals, visit_less_projection};
 use crate::discover::rest::WORTH;
@@ -75,7 +75,7 @@ pub fn best_rival(
             of_friction[place] = neutral[place];
         }
     }
-    let mut laws = laws(bench, of_friction);
+    let mut laws = laws(bench, &of_friction);
     laws.retain(|law| law.of.is_none_or(|of| !kinds.contains(&of)));
     // Whatever has a name may be a jump or two, of the sensor's zero or of the friction, or the damping of the contacts.
     for ((_, neutral), without) in effects.iter().zip(&without) {
@@ -86,18 +86,8 @@ pub fn best_rival(
     // Only columns of one law are asked for together.
     laws.sort_by_key(|law| Reverse(law.columns.len()));
     let several = laws.iter().map(|law| law.columns.len()).filter(|count| *count > 1).sum::<usize>();
-    let mut end = effects.len();
-    let mut listed = Vec::with_capacity(laws.len());
-    for law in &laws {
-        let columns: Vec<usize> = (end..end + law.columns.len()).collect();
-        end += columns.len();
-        listed.push(Listed {
-            signal: law.signal,
-            nearly_ratio: law.nearly_ratio,
-            columns,
-            least: law.least_of_excess * excess.max(0.0),
-        });
-    }
+    let listed = listed(&laws, effects.len(), excess);
+    let end = effects.len() + laws.iter().map(|law| law.columns.len()).sum::<usize>();
     let signals = || -> Signals<'_> {
         let columns = laws.iter().flat_map(|law| &law.columns);
         let mut of_laws: Vec<(usize, Numbers<'_>)> = columns.map(|numbers| (0, numbers())).collect();
@@ -169,6 +159,18 @@ pub fn best_rival(
         is_better.then_some(Rival { signal, replaces, gain })
     };
     listed.iter().filter_map(of_law).max_by(|one, other| one.gain.total_cmp(&other.gain))
+}
+
+/// Returns the places of the laws among the columns, from the first that is of no effect.
+fn listed(laws: &[Law<'_>], first: usize, excess: f64) -> Vec<Listed> {
+    let mut end = first;
+    let place = |law: &Law<'_>| {
+        let columns: Vec<usize> = (end..end + law.columns.len()).collect();
+        end += columns.len();
+        let least = law.least_of_excess * excess.max(0.0);
+        Listed { signal: law.signal, nearly_ratio: law.nearly_ratio, columns, least }
+    };
+    laws.iter().map(place).collect()
 }
 
 /// A law's place among the columns.
