@@ -1,6 +1,6 @@
 //! The verdict on a discovery: what the model lacks, on which cables, and what to do about it.
 
-use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult};
+use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WrenchGap};
 use fric_lab::text::listed;
 
 use super::{Tone, Verdict};
@@ -66,9 +66,7 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     for (kind, cables, remedy) in &kinds {
         todo.push(format!("{kind} on {}: {remedy}.", on(cables)));
     }
-    if let Some(wrong) = result.wrench.as_ref().filter(|gap| !gap.geometry.is_empty()) {
-        todo.extend(wrong.in_words().into_iter().filter(|sentence| sentence.starts_with("The robot file's")));
-    }
+    todo.extend(result.wrench.iter().flat_map(WrenchGap::corrections));
     for cable in &unexplained {
         todo.push(format!("Look where the rest of {} lies, below, and record more there.", cable.name));
     }

@@ -1,11 +1,12 @@
 //! Contacts in parallel that yield one after the other, each at another displacement: the Maxwell slip model (F. Al-Bender, V. Lampaert, J. Swevers, *The
 //! generalized Maxwell-slip model*, IEEE Trans. Autom. Control 50, 2005). The model has contacts of one stiffness.
 
+use fric_core::parameters::{SIGMA, Values};
+
 use super::past::{SHIFTS, loaded};
 use super::places::Excess;
 use crate::discover::naming::projection::{Columns, Signals, visit_less_projection};
 use crate::discover::workbench::{Evaluated, Model, Workbench};
-use fric_core::parameters::{SIGMA, Values};
 
 /// Stiffnesses of further contacts, as multiples of σ. Each is some three times the one before, as contacts of twice the stiffness look nearly the same;
 /// those of σ itself are the model's.
@@ -20,8 +21,8 @@ pub fn contacts<'b>(bench: &'b Workbench<'b>, values: &Values) -> [Evaluated<'b,
     })
 }
 
-/// Returns the fraction of the excess that such contacts, or contacts that keep their ratio of friction to load, explain and the model's parameters cannot; zero where this may be chance. The chance level is
-/// the greatest fraction for residuals shifted in time against the contacts.
+/// Returns the fraction of the excess that such contacts, or contacts that keep their ratio of friction to load, explain and the model's parameters cannot;
+/// zero where this may be chance. The chance level is the greatest fraction for residuals shifted in time against the contacts.
 pub fn share_of_contacts(bench: &Workbench<'_>, model: &Model, excess: &Excess<'_>) -> f64 {
     const COUNT: usize = STIFFNESS_RATIOS.len() + 1;
     let contacts = contacts(bench, &model.values);
@@ -40,9 +41,9 @@ pub fn share_of_contacts(bench: &Workbench<'_>, model: &Model, excess: &Excess<'
     let is_finite = visit_less_projection(&problem, &model.values, &signals, |cycle, numbers| {
         added_n.extend(<[f64; COUNT]>::try_from(numbers).map(|numbers| (cycle, numbers)));
     });
-    let (count, all) = (excess.residual_n.len(), [0, 1, 2, 3, 4]);
+    let (count, all): (usize, [usize; COUNT]) = (excess.residual_n.len(), std::array::from_fn(|place| place));
     let squares = |shift: usize| {
-        let mut columns = Columns::new(all.len(), 0, all.len());
+        let mut columns = Columns::new(COUNT, 0, COUNT);
         for (cycle, numbers) in &added_n {
             let shifted = (cycle + shift * count / SHIFTS) % count;
             columns.add(numbers, excess.residual_n.get(shifted).copied().unwrap_or(f64::NAN));

@@ -1,7 +1,8 @@
 //! Classifies the rest after naming: drift of the sensors, or something without a name.
 //!
 //! Sensor drift is noise. It continues while the cable rests and is spread over the log. A rest is not drift if it changes with the motion or the
-//! load, is a function of a condition, is concentrated in a narrow stretch of time, or is many times the noise.
+//! load, is a function of a condition, is concentrated in a narrow stretch of time, or is many times the noise. Nor is it if it follows the past of the
+//! load ([`past`]), or is what contacts of another law leave ([`contacts`]).
 
 pub mod contacts;
 pub mod empirical;

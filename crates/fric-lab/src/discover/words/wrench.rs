@@ -1,6 +1,9 @@
 //! What was found for all cables together by the wrench, in words.
 
-use crate::discover::result::{WrenchComponent, WrenchGap};
+use fric_core::effects::Effect;
+
+use crate::discover::result::{GeometryResult, WrenchComponent, WrenchGap};
+use crate::discover::wrench::Geometry;
 use crate::replay::WrenchReference;
 
 impl WrenchGap {
@@ -10,19 +13,33 @@ impl WrenchGap {
         if self.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" }
     }
 
-    /// Returns the findings for all cables together, as sentences.
+    /// Returns the entries of the robot file that are wrong, as sentences.
     #[must_use]
-    pub fn in_words(&self) -> Vec<String> {
-        let alike = self.alike.iter().map(|kind| format!("All cables have {kind} alike, with one value."));
-        let wrong = self.geometry.iter().map(|wrong| {
+    pub fn corrections(&self) -> Vec<String> {
+        let correction = |wrong: &GeometryResult| {
             let numbers = wrong.parameters.0.iter().map(|(name, number)| format!("{name} = {number:.5}"));
             let of = wrong.cable.as_ref().map_or_else(String::new, |cable| format!(" of {cable}"));
             let numbers: Vec<String> = numbers.collect();
             format!("The robot file's {}{of} is wrong: {}.", wrong.kind, numbers.join(", "))
-        });
+        };
+        self.geometry.iter().map(correction).collect()
+    }
+
+    /// Returns the findings for all cables together, as sentences.
+    #[must_use]
+    pub fn in_words(&self) -> Vec<String> {
+        let alike = self.alike.iter().map(|kind| format!("All cables have {kind} alike, with one value."));
         let tried =
             self.tried.iter().map(|tried| format!("Tried for all cables together: {}: {}.", tried.kind, tried.reason));
-        alike.chain(wrong).chain(tried).collect()
+        // The forces are known up to a common factor, with which the friction goes.
+        let names_scale = self.alike.contains(&Effect::SensorGain.kind())
+            || self.geometry.iter().any(|wrong| wrong.kind == Geometry::Mass.key());
+        let scale = (names_scale && self.reference == WrenchReference::Mass.name()).then(|| {
+            "By the weight alone, a wrong mass cannot be told from force sensors that all show too much or too little by the \
+             same factor: weigh the platform, or check one sensor with a known load."
+                .to_owned()
+        });
+        alike.chain(self.corrections()).chain(scale).chain(tried).collect()
     }
 }
 
@@ -34,5 +51,39 @@ impl WrenchComponent {
         let cell = |number: f64| format!("{number:.4} {unit}");
         let name = self.name.split('_').next().unwrap_or(self.name).to_owned();
         [name, cell(self.noise), cell(self.before), cell(self.after)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::discover::result::Evidence;
+    use crate::errors::WrenchError;
+    use crate::fit::result::Numbers;
+
+    #[test]
+    fn a_mass_by_the_weight_is_told_with_what_looks_like_it() {
+        let mass = GeometryResult {
+            kind: Geometry::Mass.key(),
+            cable: None,
+            parameters: Numbers(vec![("mass_kg".to_owned(), 1.04)]),
+            evidence: Evidence { delta_bic: None, held_out_rms_n: None },
+        };
+        let gap = |reference: WrenchReference, alike: Vec<&'static str>, geometry: Vec<GeometryResult>| WrenchGap {
+            reference: reference.name(),
+            verdict: "extended",
+            before: None,
+            after: None,
+            noise_floor: WrenchError { force_rms_n: 0.1, torque_rms_nm: 0.01 },
+            components: Vec::new(),
+            alike,
+            geometry,
+            tried: Vec::new(),
+        };
+        let warns = |gap: WrenchGap| gap.in_words().iter().any(|sentence| sentence.contains("weigh the platform"));
+        assert!(warns(gap(WrenchReference::Mass, Vec::new(), vec![mass.clone()])));
+        assert!(warns(gap(WrenchReference::Mass, vec!["sensor_gain"], Vec::new())));
+        assert!(!warns(gap(WrenchReference::Mass, vec!["stribeck"], Vec::new())));
+        assert!(!warns(gap(WrenchReference::Measured, Vec::new(), vec![mass])));
     }
 }

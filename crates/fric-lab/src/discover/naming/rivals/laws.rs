@@ -14,6 +14,16 @@ use crate::fit::{CableRecord, Row};
 const RATE_CYCLES: usize = 5;
 /// The same for the rate at which contacts store friction. After a quick reversal they do so within a few cycles.
 const STORING_CYCLES: usize = 1;
+/// Effects of how contacts yield after a reversal or under another load, which contacts of another law look like. They do not look like what acts while the
+/// cable slides: an asymmetry, a ripple, a drift, a gain.
+const OF_YIELDING: [Effect; 6] = [
+    Effect::TimeDelay,
+    Effect::LoadRelease,
+    Effect::PulleyDefect,
+    Effect::PreslidingShape,
+    Effect::GearBacklash,
+    Effect::DwellStiction,
+];
 /// Time constants of warm-up, as fractions of the log's duration.
 const TIME_CONSTANT_RATIOS: [f64; 4] = [0.06, 0.12, 0.25, 0.5];
 
@@ -38,6 +48,8 @@ pub struct Law<'a> {
     pub least_of_excess: f64,
     /// Fraction of what a name removes by which the law may remove less and still stand in for it, where both leave more than that.
     pub nearly_ratio: f64,
+    /// Effects that the law may stand in for; all if there are none.
+    pub looks_like: &'static [Effect],
     /// Each gives a signal of the law from the first cycle on, of any unit. Series of all laws would take up more memory than the log.
     pub columns: Vec<Box<dyn Fn() -> Numbers<'a> + 'a>>,
 }
@@ -54,7 +66,7 @@ impl<'a> Law<'a> {
             let number = Rc::clone(&number);
             Box::new((0..cycle_count).map(move |cycle| number(cycle)))
         };
-        Self { signal, of, least_of_excess: 0.0, nearly_ratio: 0.0, columns: vec![Box::new(numbers)] }
+        Self { signal, of, least_of_excess: 0.0, nearly_ratio: 0.0, looks_like: &[], columns: vec![Box::new(numbers)] }
     }
 }
 
@@ -88,7 +100,7 @@ pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: &Values) -> Vec<Law<'
         .map(|contact| Law::by_cycle(("way_since_reversal", None), count, move |cycle| contact.added_n(cycle)));
     laws.extend(contacts.into_iter().reduce(|mut law, contact| {
         law.columns.extend(contact.columns);
-        Law { nearly_ratio: NEARLY, ..law }
+        Law { nearly_ratio: NEARLY, looks_like: &OF_YIELDING, ..law }
     }));
     let friction = Rc::new(bench.evaluated(friction_values));
     for ratio in TIME_CONSTANT_RATIOS {
@@ -103,6 +115,7 @@ pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: &Values) -> Vec<Law<'
         of: None,
         least_of_excess: 0.0,
         nearly_ratio: NEARLY,
+        looks_like: &[],
         columns: vec![Box::new(move || Box::new(crept(&record, lag_s)))],
     };
     laws.extend(CREEP_S.map(creep));
@@ -112,6 +125,7 @@ pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: &Values) -> Vec<Law<'
         of: None,
         least_of_excess: 0.0,
         nearly_ratio: NEARLY,
+        looks_like: &OF_YIELDING,
         columns: vec![Box::new(move || {
             let friction = Rc::clone(&friction);
             Box::new(loaded(&record, &friction_values, move |cycle| friction.added_n(cycle)))

@@ -107,7 +107,13 @@ pub fn best_rival(
     let gain = |places: &[usize]| columns.gain(places);
     let all: Vec<usize> = (0..effects.len()).collect();
     let by_name = gain(&all);
-    let of_law = |Listed { signal, nearly_ratio, columns: law, least }: &Listed| {
+    let of_law = |Listed { signal, nearly_ratio, looks_like, columns: law, least }: &Listed| {
+        let is_alike = |name: usize| looks_like.is_empty() || looks_like.contains(&kinds[name]);
+        let together = gain(&[&all[..], law].concat());
+        let others = |name: usize| -> Vec<usize> { all.iter().copied().filter(|other| *other != name).collect() };
+        // What a name explains beside the law, as a fraction of what it explains without.
+        let beside =
+            |name: usize| (together - gain(&[&others(name)[..], law].concat())) / (by_name - gain(&others(name)));
         let mut places: Vec<usize> = [&all[..], law].concat();
         loop {
             let now = gain(&places);
@@ -115,35 +121,33 @@ pub fn best_rival(
                 let others: Vec<usize> = places.iter().copied().filter(|other| *other != place).collect();
                 (now - gain(&others), place)
             };
-            let names = places.iter().copied().filter(|place| *place < effects.len());
-            let weakest = names.map(without).min_by(|one, other| one.0.total_cmp(&other.0));
+            // Several columns, or the past, explain something of any rest. That leaves a name what it explains by itself.
+            let may_go =
+                |place: &usize| *place < effects.len() && (*nearly_ratio <= 0.0 || beside(*place) < LEAST_BESIDE_RATIO);
+            let weakest =
+                places.iter().copied().filter(may_go).map(without).min_by(|one, other| one.0.total_cmp(&other.0));
             let Some((_, place)) = weakest.filter(|(loss, _)| *loss < enough) else { break };
             places.retain(|other| *other != place);
         }
         let replaces: Vec<usize> = all.iter().copied().filter(|place| !places.contains(place)).collect();
-        let (together, gain) = (gain(&[&all[..], law].concat()), gain(&places));
+        let gain_left = gain(&places);
         // A law of several columns explains half of many a name.
         let may_bend = law.len() == 1 && excess > NEGLIGIBLE * of_noise;
         if replaces.is_empty() && may_bend && together - by_name > enough.max(MOST_BENT * excess).max(*least) {
             // The law wins if it explains much of the rest, more than chance would, and shares what it explains with one of the names.
-            let of_name = |name: &usize| {
-                let others: Vec<usize> = all.iter().copied().filter(|other| other != name).collect();
-                let beside = [&others[..], law].concat();
-                (together - columns.gain(&beside)) / (by_name - columns.gain(&others))
-            };
-            let shares = all.iter().map(|name| (of_name(name), *name)).min_by(|one, other| one.0.total_cmp(&other.0));
+            let shares = all.iter().map(|name| (beside(*name), *name)).min_by(|one, other| one.0.total_cmp(&other.0));
             let (_, name) = shares.filter(|(share, _)| *share < LEAST_BESIDE_RATIO)?;
             return Some(Rival { signal, replaces: vec![name], gain: together });
         }
         if *nearly_ratio > 0.0 && replaces.is_empty() && excess > WORTH * of_noise {
             // Where more than noise is left, a difference smaller than that does not tell a name from a law.
-            let loss = |name: &usize| {
-                let others: Vec<usize> = all.iter().copied().filter(|other| other != name).collect();
-                let loss = by_name - columns.gain(&[&others[..], law].concat());
-                (loss, by_name - columns.gain(&others), *name)
+            let loss = |name: usize| by_name - gain(&[&others(name)[..], law].concat());
+            let is_nearly = |name: &usize| {
+                let of_name = by_name - gain(&others(*name));
+                loss(*name) < (nearly_ratio * of_name).min(excess) && beside(*name) < LEAST_BESIDE_RATIO
             };
-            let losses = all.iter().map(loss).filter(|(loss, of_name, _)| *loss < (nearly_ratio * of_name).min(excess));
-            if let Some((.., name)) = losses.min_by(|(one, ..), (other, ..)| one.total_cmp(other)) {
+            let names = all.iter().copied().filter(|name| is_alike(*name)).filter(is_nearly);
+            if let Some(name) = names.min_by(|one, other| loss(*one).total_cmp(&loss(*other))) {
                 return Some(Rival { signal, replaces: vec![name], gain: together });
             }
         }
@@ -153,10 +157,10 @@ pub fn best_rival(
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
         let is_better = match replaces.len() {
             0 => false,
-            1 => gain > by_name + of_columns.max(*least),
-            count => gain + (count - 1) as f64 * enough > by_name + more + least,
+            1 => gain_left > by_name + of_columns.max(*least),
+            count => gain_left + (count - 1) as f64 * enough > by_name + more + least,
         };
-        is_better.then_some(Rival { signal, replaces, gain })
+        is_better.then_some(Rival { signal, replaces, gain: gain_left })
     };
     listed.iter().filter_map(of_law).max_by(|one, other| one.gain.total_cmp(&other.gain))
 }
@@ -168,7 +172,7 @@ fn listed(laws: &[Law<'_>], first: usize, excess: f64) -> Vec<Listed> {
         let columns: Vec<usize> = (end..end + law.columns.len()).collect();
         end += columns.len();
         let least = law.least_of_excess * excess.max(0.0);
-        Listed { signal: law.signal, nearly_ratio: law.nearly_ratio, columns, least }
+        Listed { signal: law.signal, nearly_ratio: law.nearly_ratio, looks_like: law.looks_like, columns, least }
     };
     laws.iter().map(place).collect()
 }
@@ -177,6 +181,7 @@ fn listed(laws: &[Law<'_>], first: usize, excess: f64) -> Vec<Listed> {
 struct Listed {
     signal: &'static str,
     nearly_ratio: f64,
+    looks_like: &'static [Effect],
     columns: Vec<usize>,
     /// Decrease of the sum of squares that is not enough for it, N².
     least: f64,
