@@ -10,7 +10,8 @@ use super::run::{Run, RunSample};
 /// Returns the run in the base frame, with a corrected sensor at the base. Shifts stay unchanged: [`Gratings`](super::gratings::Gratings) removes
 /// their step and drift.
 ///
-/// The tension at the base is `(shown(t + lag) − offset)/gain`, interpolated linearly between samples, constant beyond the ends, and never negative.
+/// The tension at the base is `(shown(t + lag) − offset)/gain`, interpolated linearly between samples, and never negative. Beyond an end it is the
+/// point reflection of the run in its outermost sample, which continues a pull and a rest alike.
 ///
 /// # Errors
 /// A checked run causes no error; the signature is that of [`Run`]'s check.
@@ -54,17 +55,28 @@ pub fn as_measured(samples: &[RunSample], file: &ManipulatorFile) -> Vec<RunSamp
 
 /// Returns the tension at the base at any time, N; `own_n` if there are no samples.
 fn tension_n(samples: &[RunSample], time_s: f64, own_n: f64) -> f64 {
-    let behind = samples.partition_point(|sample| sample.time_s < time_s);
-    let (before, after) = (behind.checked_sub(1).and_then(|before| samples.get(before)), samples.get(behind));
-    match (before, after) {
-        (_, Some(own)) if own.time_s <= time_s => own.tension_base_n,
-        (Some(before), Some(after)) => {
-            let share = (time_s - before.time_s) / (after.time_s - before.time_s);
-            before.tension_base_n + share * (after.tension_base_n - before.tension_base_n)
-        }
-        (Some(only), None) | (None, Some(only)) => only.tension_base_n,
-        (None, None) => own_n,
+    let [Some(first), Some(last)] = [samples.first(), samples.last()] else { return own_n };
+    let end = if time_s > last.time_s { last } else { first };
+    if time_s < first.time_s || time_s > last.time_s {
+        let mirrored_s = (2.0 * end.time_s - time_s).clamp(first.time_s, last.time_s);
+        return 2.0 * end.tension_base_n - between(samples, mirrored_s).unwrap_or(end.tension_base_n);
     }
+    between(samples, time_s).unwrap_or(own_n)
+}
+
+/// Returns the tension at the base at a time within the run, N.
+fn between(samples: &[RunSample], time_s: f64) -> Option<f64> {
+    let behind = samples.partition_point(|sample| sample.time_s < time_s);
+    let after = samples.get(behind)?;
+    let Some(before) = behind.checked_sub(1).and_then(|before| samples.get(before)) else {
+        return Some(after.tension_base_n);
+    };
+    // At a sample itself the one before does not matter, which may be a gap.
+    if after.time_s <= time_s {
+        return Some(after.tension_base_n);
+    }
+    let share = (time_s - before.time_s) / (after.time_s - before.time_s);
+    Some(before.tension_base_n + share * (after.tension_base_n - before.tension_base_n))
 }
 
 #[cfg(test)]
@@ -92,8 +104,9 @@ mod tests {
         assert!((shown[0].marker_m[0][0] - expected_m[0]).abs() < 1e-15);
         assert!((shown[0].marker_m[0][1] - expected_m[1]).abs() < 1e-15);
         let back = corrected(&Run::new(shown, 8).unwrap(), &file).unwrap();
-        for (back, sample) in back.samples().iter().zip(&samples).take(28) {
-            assert!((back.tension_base_n - sample.tension_base_n).abs() < 1e-12 || sample.time_s < 0.15);
+        // The pull goes on beyond both ends.
+        for (back, sample) in back.samples().iter().zip(&samples) {
+            assert!((back.tension_base_n - sample.tension_base_n).abs() < 1e-12);
             assert!((back.marker_m[0][1] - sample.marker_m[0][1]).abs() < 1e-15);
         }
     }

@@ -166,6 +166,51 @@ fn a_drifting_grating_is_named_and_another_fault_is_not() {
     assert_eq!(rest.places[0].from, 5);
 }
 
+/// Holes of another law leave a few millinewtons at every grating, which contradict neither a drift nor a lag: both are named, and the rest is told.
+#[test]
+fn what_all_holes_leave_hides_neither_a_drift_nor_a_lag() {
+    let (text, mut samples) = measured(Experiment::Mixed, 7, &[0.1753]);
+    for sample in &mut samples {
+        for (grating, shift_nm) in (0_u32..).zip(&mut sample.shift_nm) {
+            *shift_nm += 0.0003 * (2.0 * sample.time_s + f64::from(grating)).sin();
+        }
+    }
+    assert_eq!(told_but_holes(&found(&text, &samples)), ("unexplained", Vec::new()));
+
+    let mut warm = samples.clone();
+    for sample in &mut warm {
+        sample.shift_nm[4] += 0.002 * sample.time_s;
+    }
+    let discovery = found(&text, &warm);
+    assert_eq!(told_but_holes(&discovery), ("unexplained", vec!["sensor_drift"]));
+    let effect = discovery.result.cables[0].effects.iter().find(|effect| effect.kind == "sensor_drift").unwrap();
+    assert_eq!(effect.parameters.get("grating"), Some(5.0));
+    assert!((effect.parameters.get("drift_nm_per_s").unwrap() / 0.002 - 1.0).abs() < 0.05);
+
+    let mut late = samples.clone();
+    for (sample, shown) in late.iter_mut().skip(3).zip(&samples) {
+        sample.tension_base_n = shown.tension_base_n;
+    }
+    let discovery = found(&text, &late);
+    assert_eq!(told_but_holes(&discovery), ("unexplained", vec!["tension_lag"]));
+    let lag_s = discovery.result.cables[0].effects[0].parameters.get("base_lag_s").unwrap();
+    assert!((lag_s / (samples[3].time_s - samples[0].time_s) - 1.0).abs() < 0.05, "{lag_s} s");
+}
+
+/// Pulled one way the last samples lack what comes after them; it is taken to go on.
+#[test]
+fn a_lag_is_found_also_pulled_one_way() {
+    let (text, samples) = measured(Experiment::OneWay, 7, &[0.1753]);
+    let mut late = samples.clone();
+    for (sample, shown) in late.iter_mut().skip(3).zip(&samples) {
+        sample.tension_base_n = shown.tension_base_n;
+    }
+    let discovery = found(&text, &late);
+    assert_eq!(told_but_holes(&discovery), ("extended", vec!["tension_lag"]));
+    let lag_s = discovery.result.cables[0].effects[0].parameters.get("base_lag_s").unwrap();
+    assert!((lag_s / (samples[3].time_s - samples[0].time_s) - 1.0).abs() < 0.05, "{lag_s} s");
+}
+
 /// Lines of other gratings are wrong in slope and offset, and pulled one way the tension rises with the time as a drift does.
 #[test]
 fn lines_of_other_gratings_are_no_drift() {

@@ -16,7 +16,7 @@
 //! | `hole_friction` | | a hole has a μ of its own |
 //!
 //! A wrong calibration line (for instance that of another grating) has no name: a drift must explain more than it would. If a rest remains, a
-//! grating, or a hole between two gratings, is only named if no rest remains there.
+//! grating, or a hole between two gratings, is only named if no more remains there than at the others.
 //!
 //! The calibration errors of the lines are estimated together with each model (`lines`). The remaining residual is noise if consecutive samples are
 //! uncorrelated (`noise`). If the run has markers, they contribute to the verdict: shapes under the measured tensions (`markers`) must agree with
@@ -47,6 +47,7 @@ use fric_tendon::file::ManipulatorFile;
 use self::case::Case;
 use self::machine::Machine;
 use self::machine::candidate::Candidate;
+use self::noise::excess_n;
 use super::base_noise::{BaseNoise, steadied};
 use super::error::ContinuumError;
 use super::gratings::Gratings;
@@ -106,9 +107,10 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
             let gratings = Gratings::from_file(extended)?.ok_or(ContinuumError::NoGratings)?;
             let with_found = Case::new(extended, &run, &gratings, &kept, base_error_n)?;
             let outcome = friction::naming::name(&with_found)?.beside(&case)?;
-            // A lag with which the tensions still disagree is something else, for instance the ends of a pull in one direction.
+            // A lag that leaves more than it accounts for is something else.
             let is_lag = named.iter().any(|one| one.candidate == Candidate::TensionLag);
-            (outcome.verdict != Verdict::Unexplained || !is_lag).then_some((extended, with_found, outcome))
+            let is_guess = excess_n(&outcome.before).powi(2) < 2.0 * excess_n(&outcome.after).powi(2);
+            (!is_lag || !is_guess).then_some((extended, with_found, outcome))
         }
         None => None,
     };

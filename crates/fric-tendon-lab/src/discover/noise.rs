@@ -76,11 +76,17 @@ pub fn is_negligible(case: &Case<'_>, fit: &Fit) -> bool {
     common.rms() <= common.chance().hypot(practical_n(case))
 }
 
-/// Whether the rest of one grating, counted from 0, is noise.
-pub fn is_noise_at(case: &Case<'_>, fit: &Fit, grating: usize) -> bool {
-    let mut common = Common::default();
-    common.add(&series(fit, grating));
-    common.rms() <= common.chance().hypot(practical_n(case))
+/// Whether the rest of one grating, counted from 0, is noise, or no more than at the other gratings, where `own` is true for those that an effect
+/// accounts for. What all holes leave, such as contacts of another law, does not contradict an effect at one of them.
+pub fn is_as_elsewhere(case: &Case<'_>, fit: &Fit, grating: usize, own: &dyn Fn(usize) -> bool) -> bool {
+    let rest = |grating: usize| {
+        let mut common = Common::default();
+        common.add(&series(fit, grating));
+        common
+    };
+    let here = rest(grating);
+    let elsewhere = (0..fit.model.mu.len()).filter(|other| !own(*other)).map(|other| rest(other).rms());
+    here.rms() <= here.chance().hypot(practical_n(case)).max(elsewhere.fold(0.0, f64::max))
 }
 
 /// Returns the error that is no evidence: a negligible one, and two standard errors of the tension at the base, which all gratings have in common.

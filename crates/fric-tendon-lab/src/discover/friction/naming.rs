@@ -8,7 +8,7 @@ use super::trials::{Trial, trials};
 use crate::discover::case::{Case, Fit};
 use crate::discover::final_fit::{Final, is_own_mu};
 use crate::discover::markers::MarkerFit;
-use crate::discover::noise::{excess_n, is_negligible, is_noise_at, rms_n};
+use crate::discover::noise::{excess_n, is_as_elsewhere, is_negligible, rms_n};
 use crate::discover::worse::{are_tensions_worse, worse_shape};
 use crate::error::ContinuumError;
 
@@ -81,7 +81,7 @@ impl Outcome {
 /// If the disks disagree with their markers, no hole is named, because its μ follows from the bend. If the tensions fit with individual holes, only
 /// the bending remains to be reported.
 ///
-/// If a rest remains, a grating, or a hole between two gratings, that still disagrees is not named: its cause is something else. An effect that makes
+/// If a rest remains, a grating, or a hole between two gratings, that still disagrees, more than the others, is not named: its cause is something else. An effect that makes
 /// shapes or tensions worse than with the given file is not named either.
 ///
 /// # Errors
@@ -96,7 +96,12 @@ pub fn name(case: &Case<'_>) -> Result<Outcome, ContinuumError> {
         let found = search(case, &distrusted)?;
         let wrong = disagreeing(case, &found);
         if found.verdict == Verdict::Unexplained && !wrong.is_empty() {
-            refuse(&found, &wrong, "what it leaves at its gratings is not noise", &mut refused);
+            refuse(
+                &found,
+                &wrong,
+                "what it leaves at its gratings is neither noise nor as little as at the others",
+                &mut refused,
+            );
             distrusted.extend(wrong);
             continue;
         }
@@ -164,15 +169,19 @@ struct Search {
     tried: Vec<Tried>,
 }
 
-/// Returns the effects at gratings that still disagree.
+/// Returns the effects at gratings that disagree more than the others.
 fn disagreeing(case: &Case<'_>, found: &Search) -> Vec<Effect> {
-    let disagrees = |grating: usize| !is_noise_at(case, &found.after, grating);
-    let is_wrong = |effect: &Effect| match *effect {
-        Effect::SensorDrift(grating) => disagrees(grating),
-        Effect::HoleFriction(hole) => (hole.saturating_sub(1)..=hole).any(disagrees),
-        Effect::Coulomb | Effect::Presliding => false,
+    let gratings = |effect: &Effect| match *effect {
+        Effect::SensorDrift(grating) => grating..=grating,
+        Effect::HoleFriction(hole) => hole.saturating_sub(1)..=hole,
+        #[expect(clippy::reversed_empty_ranges, reason = "these are at no grating")]
+        Effect::Coulomb | Effect::Presliding => 1..=0,
     };
-    found.findings.iter().map(|finding| finding.effect).filter(is_wrong).collect()
+    let effects = || found.findings.iter().map(|finding| finding.effect);
+    let is_accounted = |grating: usize| effects().any(|effect| gratings(&effect).contains(&grating));
+    let is_wrong =
+        |effect: &Effect| gratings(effect).any(|grating| !is_as_elsewhere(case, &found.after, grating, &is_accounted));
+    effects().filter(is_wrong).collect()
 }
 
 /// Moves effects to those that helped but did not suffice.

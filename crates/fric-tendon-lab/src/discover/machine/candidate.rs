@@ -119,7 +119,7 @@ impl Candidate {
     }
 
     /// Returns the rank. Of several candidates that explain a run equally, the one with the greatest rank is written: lengths are measured with a
-    /// calliper, stiffness is not.
+    /// calliper, stiffness is not; a sensor's zero wanders, its time stamps do not.
     pub fn rank(self) -> u8 {
         match self {
             Self::Stiffness => 9,
@@ -129,8 +129,8 @@ impl Candidate {
             Self::Temperature => 5,
             Self::TendonOffset => 4,
             Self::Precurvature => 3,
-            Self::BaseGain | Self::BaseOffset | Self::TensionLag => 2,
-            Self::SegmentStiffness(_) | Self::UnevenPitch => 1,
+            Self::BaseGain | Self::BaseOffset => 2,
+            Self::SegmentStiffness(_) | Self::UnevenPitch | Self::TensionLag => 1,
             Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines => 0,
         }
     }
