@@ -313,7 +313,7 @@ impl<'a> Bench<'a> {
         white_noise(&taken.map(|(number, _)| number).collect::<Vec<f64>>())
     }
 
-    /// Returns the mean squared whitened deviation if the force of each cable has an error of this fraction of its tension, and all errors add up.
+    /// Returns the mean squared whitened deviation if the force of each cable has an independent error of this fraction of its tension.
     pub fn believed_square(&self, model: &Model, ratio: f64) -> f64 {
         let (structure, _) = self.description.changed(&model.changes);
         let (mut sum, mut count) = (0.0, 0.0);
@@ -321,9 +321,9 @@ impl<'a> Bench<'a> {
             let columns = structure.iter().skip(place * self.records.len());
             let error = |(record, column): (&CableRecord<'_>, &Vector6<f64>)| {
                 let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-                (self.whitening * column).abs() * (ratio * sensor_n * record.params.frictionless_gain()).abs()
+                (self.whitening * column * (ratio * sensor_n * record.params.frictionless_gain())).norm_squared()
             };
-            sum += self.records.iter().zip(columns).map(error).sum::<Vector6<f64>>().norm_squared();
+            sum += self.records.iter().zip(columns).map(error).sum::<f64>();
             count += 1.0;
         }
         if count > 0.0 { sum / count } else { 0.0 }
@@ -340,8 +340,8 @@ impl<'a> Bench<'a> {
         columns.zip(deviations).map(nearest).collect()
     }
 
-    /// Returns the root mean square of [`of_cable_n`](Self::of_cable_n) if the force of each cable has an error of this fraction of its tension, and
-    /// all errors add up, N.
+    /// Returns the root mean square of [`of_cable_n`](Self::of_cable_n) if the force of each cable has an independent error of this fraction of its
+    /// tension, N.
     pub fn believed_n(&self, model: &Model, cable: usize, ratio: f64) -> f64 {
         let (structure, _) = self.description.changed(&model.changes);
         let count = self.records.len();
@@ -351,9 +351,9 @@ impl<'a> Bench<'a> {
             let own = levers.get(cable)?;
             let error = |(lever, record): (&Vector6<f64>, &CableRecord<'_>)| {
                 let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-                ratio * (sensor_n * record.params.frictionless_gain() * own.dot(lever)).abs()
+                (ratio * sensor_n * record.params.frictionless_gain() * own.dot(lever)).powi(2)
             };
-            Some(levers.iter().zip(&self.records).map(error).sum::<f64>() / own.norm_squared())
+            Some(levers.iter().zip(&self.records).map(error).sum::<f64>().sqrt() / own.norm_squared())
         };
         let used = self.counts.iter().enumerate().filter(|(_, counts)| **counts);
         let mut errors = Deviation::default();

@@ -110,7 +110,7 @@ impl Case<'_, '_> {
         let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
         let (residual_before_n, residual_after_n) = (residual_n(base), residual_n(fitted));
         let noise_n = bench.white_noise(residual_after_n.iter().copied()).unwrap_or(f64::NAN);
-        // No friction model is exact, and the errors of all cables may add up.
+        // No friction model is exact, of this cable and of the others.
         let believed_n = bench.believed_n(&fitted.model, cable, BELIEVED_RATIO);
         let floor_n = noise_n.hypot(believed_n);
         let excess = Excess { record, blocks: &bench.blocks, residual_n: &residual_after_n, noise_n: floor_n };
