@@ -145,11 +145,7 @@ pub fn set_platform(text: &str, origin: &str, edit: &PlatformEdit) -> Result<Str
             .and_then(|document| Body::of_item(document.get("platform")?)?.set(&text, "platform", key, value));
         let problem =
             || "`platform` is missing, or written in a way that cannot be added to; write it in one table".to_owned();
-        let splices = splices.ok_or_else(|| RobotFileError::Invalid {
-            origin: origin.to_owned(),
-            line: None,
-            problem: problem(),
-        })?;
+        let splices = splices.ok_or_else(|| invalid(origin, problem()))?;
         splice::apply(&mut text, splices);
     }
     RobotFile::parse(&text, &format!("{origin} with the new values"))?;
@@ -172,15 +168,15 @@ pub fn set_monitor(text: &str, origin: &str, key: &str, value: f64) -> Result<St
         let place = Entry { start: name.span()?.start, end: item.as_value()?.span()?.end };
         Some(splice::below(text, &place, &format!("monitor.{}", entry(key, value))))
     });
-    let splices = splices.ok_or_else(|| RobotFileError::Invalid {
-        origin: origin.to_owned(),
-        line: None,
-        problem: refusal("monitor"),
-    })?;
+    let splices = splices.ok_or_else(|| invalid(origin, refusal("monitor")))?;
     let mut text = text.to_owned();
     splice::apply(&mut text, splices);
     RobotFile::parse(&text, &format!("{origin} with the new values"))?;
     Ok(text)
+}
+
+fn invalid(origin: &str, problem: String) -> RobotFileError {
+    RobotFileError::Invalid { origin: origin.to_owned(), line: None, cable: None, problem }
 }
 
 /// A text under construction. It is parsed again after each change, so that each change sees the current positions.
@@ -223,11 +219,7 @@ impl Draft<'_> {
         let planned = Document::parse(self.text.as_str())
             .map_err(|error| error.message().to_owned())
             .and_then(|document| plan(&Cable::find(&document, name)?, &self.text));
-        let splices = planned.map_err(|problem| RobotFileError::Invalid {
-            origin: self.origin.to_owned(),
-            line: None,
-            problem,
-        })?;
+        let splices = planned.map_err(|problem| invalid(self.origin, problem))?;
         splice::apply(&mut self.text, splices);
         Ok(())
     }

@@ -274,6 +274,8 @@ pub enum RobotFileError {
         origin: String,
         /// Line, from 1, if it is known.
         line: Option<usize>,
+        /// The cable that the problem names, if it does.
+        cable: Option<String>,
         /// The problem, and what to do.
         problem: String,
     },
@@ -294,13 +296,15 @@ impl RobotFile {
     /// # Errors
     /// Returns [`RobotFileError::Invalid`] for the first problem.
     pub fn parse(text: &str, origin: &str) -> Result<Self, RobotFileError> {
-        let invalid = |line, problem: String| RobotFileError::Invalid {
+        let invalid = |line, cable, problem: String| RobotFileError::Invalid {
             origin: text_file::printable(origin),
             line,
+            cable,
             problem: text_file::printable(&problem),
         };
-        let options = read_tables(text, FORMAT).map_err(|(line, problem)| invalid(line, problem))?;
-        Self::check(options).map_err(|fault| invalid(line_of(text, &fault.path), fault.to_string()))
+        let options = read_tables(text, FORMAT).map_err(|(line, problem)| invalid(line, None, problem))?;
+        Self::check(options)
+            .map_err(|fault| invalid(line_of(text, &fault.path), fault.cable.clone(), fault.to_string()))
     }
 
     /// Checks options that come from elsewhere than a text; the error names key and problem.

@@ -34,19 +34,28 @@ pub fn is_period(parameter: &Parameter) -> bool {
     parameter.row().key == PERIOD_KEY
 }
 
-/// Returns the periods in the cable's length at which a residual ripples.
+/// Returns the periods in the cable's length at which a residual ripples, and the circumference of the pulley whose radius is known, if the cable moves
+/// by at least that: the scan needs two turns.
 pub fn periods(record: &CableRecord<'_>, residual_n: &[f64]) -> Periods {
+    let circumference_m = record.params.pose_pulley_radius_m().map(|radius_m| TAU * radius_m);
+    let lengths_m = || record.rows.iter().map(|row| row.signals.length_m).filter(|length_m| length_m.is_finite());
+    let range_m = lengths_m().fold(f64::NEG_INFINITY, f64::max) - lengths_m().fold(f64::INFINITY, f64::min);
+    let of = |carrier: &dyn Fn(&Row) -> f64| {
+        let mut periods_m = scanned_m(record, residual_n, carrier);
+        let is_new =
+            |turn_m: &f64| !periods_m.iter().any(|period_m| (period_m / turn_m - 1.0).abs() < 0.5 * turn_m / range_m);
+        periods_m.extend(circumference_m.filter(|turn_m| *turn_m <= range_m).filter(is_new));
+        periods_m
+    };
     Periods {
-        with_load: periods_m(record, residual_n, |row| row.signals.sensor_force_n),
-        with_friction: periods_m(record, residual_n, |row| {
-            row.signals.sensor_force_n * row.signals.displacement_m.signum()
-        }),
-        alone: periods_m(record, residual_n, |_| 1.0),
+        with_load: of(&|row| row.signals.sensor_force_n),
+        with_friction: of(&|row| row.signals.sensor_force_n * row.signals.displacement_m.signum()),
+        alone: of(&|_| 1.0),
     }
 }
 
 /// Returns the periods at which a residual ripples in proportion to `carrier`, the strongest first.
-fn periods_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row) -> f64) -> Vec<f64> {
+fn scanned_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row) -> f64) -> Vec<f64> {
     /// Number of samples that suffices.
     const ENOUGH: usize = 6000;
     let moving = record.rows.iter().zip(residual_n).filter(|(row, residual_n)| {

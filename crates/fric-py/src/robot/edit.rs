@@ -38,7 +38,7 @@ pub fn with(file: &RobotFile, place: &[Step], values: Vec<(String, Option<Value>
     let text = toml::to_string(&root).map_err(unwritable)?;
     RobotFile::parse(&text, "robot").map_err(|error| match error {
         // Errors in values name the cable themselves, errors in keys and types do not.
-        RobotFileError::Invalid { problem, .. } if problem.starts_with("cable \"") => Fault::config(problem),
+        RobotFileError::Invalid { problem, cable: Some(_), .. } => Fault::config(problem),
         RobotFileError::Invalid { problem, .. } => Fault::config(cable_of(file, place) + &problem),
         error => error.into(),
     })
