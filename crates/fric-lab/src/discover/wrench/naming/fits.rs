@@ -1,7 +1,5 @@
 //! The models that a search has fitted, and the comparison of two of them.
 
-use std::collections::BTreeMap;
-
 use fric_core::effects::Effect;
 use fric_core::parameters::MU;
 use rayon::prelude::*;
@@ -17,11 +15,13 @@ use crate::discover::wrench::candidate::Candidate;
 use crate::discover::wrench::geometry::Geometry;
 use crate::discover::wrench::screen::{Promise, Promises, promises};
 use crate::effects::{self, Around};
+use crate::fit::Parameter;
 use crate::replay::WrenchReference;
 
-/// Number of candidates beside a model that are fitted: those that promise most, and of one kind, such as a gain on different cables, at most so many.
+/// Number of candidates beside a model that are fitted: those that promise most.
 const FITTED: usize = 6;
-const FITTED_OF_KIND: usize = 2;
+/// Usual relative error of the sensor gains that all cables have alike.
+const USUAL_GAIN: f64 = 0.02;
 
 impl Search<'_, '_> {
     /// Returns the model with these candidates. A new set is fitted from the best known model with one candidate more.
@@ -53,14 +53,8 @@ impl Search<'_, '_> {
     /// Returns the models with one more of the most promising candidates, without those that were set aside.
     pub(super) fn beside(&mut self, found: &[Candidate]) -> Vec<(Candidate, Trial)> {
         let all: Vec<Candidate> = self.promises(found).of_candidates.iter().map(|promise| promise.candidate).collect();
-        let mut of_kinds: BTreeMap<&str, usize> = BTreeMap::new();
-        let is_first = |candidate: &Candidate| {
-            let count = of_kinds.entry(candidate.kind()).or_default();
-            *count += 1;
-            *count <= FITTED_OF_KIND
-        };
         let open = all.into_iter().filter(|candidate| !self.refused.contains_key(candidate));
-        let most_promising: Vec<Candidate> = open.filter(is_first).take(FITTED).collect();
+        let most_promising: Vec<Candidate> = open.take(FITTED).collect();
         self.each_beside(found, &most_promising)
     }
 
@@ -114,10 +108,7 @@ impl Search<'_, '_> {
                     && !scales_all(self.bench, model, candidate)
             };
             let mut all = promises(self.bench, model, &around, is_wanted);
-            // By the weight alone, gains of all sensors that are wrong alike are the same as a wrong mass, which is the likelier cause.
-            let by_weight = self.bench.description.reference == WrenchReference::Mass;
-            let is_mass = |of: Candidate| by_weight && of == Candidate::Alike(Effect::SensorGain);
-            all.of_candidates.retain(|promise| promise.gain > 0.0 && !is_mass(promise.candidate));
+            all.of_candidates.retain(|promise| promise.gain > 0.0);
             self.promised.insert(set.clone(), all);
         }
         self.promised.entry(set).or_default()
@@ -140,14 +131,14 @@ impl Search<'_, '_> {
 
     /// Returns the squared deviations of the held-out samples above the noise, as a fraction of the noise.
     pub(super) fn excess(&self, trial: &Trial) -> f64 {
-        trial.held_out / self.held_out_squares(self.noise_square) - 1.0
+        trial.held_out / self.noise_squares(true) - 1.0
     }
 
-    /// Returns the sum over the held-out samples of so much in each.
-    pub(super) fn held_out_squares(&self, square: f64) -> f64 {
+    /// Returns the expected sum of squares of the noise over the held-out samples, or over the training samples.
+    pub(super) fn noise_squares(&self, held_out: bool) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = self.bench.count(true) as f64;
-        count * square
+        let count = self.bench.count(held_out) as f64;
+        count * self.noise_square
     }
 
     /// Returns the BIC difference from one model to another with `more` additional parameters; a negative value favours the second.
@@ -157,13 +148,21 @@ impl Search<'_, '_> {
         delta_bic(count, to.training / from.training, more) + self.oddity(to) - self.oddity(from)
     }
 
-    /// Returns the evidence against a model that is known before any sample: points and the vertical are seldom far off.
+    /// Returns the evidence against a model that is known before any sample: points and the vertical are seldom far off, and the gains of all sensors
+    /// are seldom wrong alike, which the weight cannot distinguish from a wrong mass.
     pub(super) fn oddity(&self, trial: &Trial) -> f64 {
+        let model = &trial.model;
         let of = |(of, numbers): (&Geometry, &Vec<f64>)| {
             let usual = self.bench.description.usual(*of);
             numbers.iter().map(|number| (number / usual).powi(2)).sum::<f64>()
         };
-        trial.model.changes.iter().map(of).sum()
+        let is_gain = |of: &&Parameter| of.effect() == Some(Effect::SensorGain);
+        let by_weight = self.bench.description.reference == WrenchReference::Mass;
+        let gain = model.alike.iter().find(is_gain).filter(|_| by_weight);
+        let of_gain = gain
+            .zip(model.values.first())
+            .map_or(0.0, |(of, values)| ((values[of.place()] - of.row().neutral) / USUAL_GAIN).powi(2));
+        model.changes.iter().map(of).sum::<f64>() + of_gain
     }
 
     /// Whether a parameter of a candidate is stuck at a bound of its range.
