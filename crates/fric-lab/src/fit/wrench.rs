@@ -276,7 +276,10 @@ impl<'a> Case<'a> {
             stop: progress.stop_flag(),
             seat: None,
         };
-        let starts = start::starts(&problem, &given, self.cycle_s());
+        // The forces of the cables show in combinations only, so that a search from the data may end in a false minimum. The given friction may be
+        // nearer to the true one.
+        let mut starts = start::starts(&problem, &given, self.cycle_s());
+        starts.push(given.clone());
         for standings in &mut of_cables {
             leave_out_warm_up(&problem, &starts, standings);
         }
@@ -297,8 +300,8 @@ impl<'a> Case<'a> {
         let mut earlier = Earlier::default();
         match self.offsets(&problem, &solution, cycle_s) {
             Offsets::Contradicted => {
-                // Friction parameters that seemed undetermined beside wrong offsets are tried again, from other starts too: offsets that look wrong
-                // may also mean that the first search ended in a local minimum, and the given friction may be nearer to the global one.
+                // Friction parameters that seemed undetermined beside wrong offsets are tried again, from all starts: offsets that look wrong may
+                // also mean that the first search ended in a local minimum.
                 problem.members = self.members(&|_, _| true);
                 earlier.evaluation_count += solution.evaluation_count;
                 let mut starts = vec![solution.values, given.clone()];

@@ -1,7 +1,5 @@
 //! What was found for all cables together by the wrench, in words.
 
-use fric_core::effects::Effect;
-
 use crate::discover::result::{GeometryResult, WrenchComponent, WrenchGap};
 use crate::discover::wrench::Geometry;
 use crate::replay::WrenchReference;
@@ -32,9 +30,8 @@ impl WrenchGap {
         let tried =
             self.tried.iter().map(|tried| format!("Tried for all cables together: {}: {}.", tried.kind, tried.reason));
         // The forces are known up to a common factor, with which the friction goes.
-        let names_scale = self.alike.contains(&Effect::SensorGain.kind())
-            || self.geometry.iter().any(|wrong| wrong.kind == Geometry::Mass.key());
-        let scale = (names_scale && self.reference == WrenchReference::Mass.name()).then(|| {
+        let names_mass = self.geometry.iter().any(|wrong| wrong.kind == Geometry::Mass.key());
+        let scale = (names_mass && self.reference == WrenchReference::Mass.name()).then(|| {
             "By the weight alone, a wrong mass cannot be told from force sensors that all show too much or too little by the \
              same factor: weigh the platform, or check one sensor with a known load."
                 .to_owned()
@@ -69,21 +66,20 @@ mod tests {
             parameters: Numbers(vec![("mass_kg".to_owned(), 1.04)]),
             evidence: Evidence { delta_bic: None, held_out_rms_n: None },
         };
-        let gap = |reference: WrenchReference, alike: Vec<&'static str>, geometry: Vec<GeometryResult>| WrenchGap {
+        let gap = |reference: WrenchReference, geometry: Vec<GeometryResult>| WrenchGap {
             reference: reference.name(),
             verdict: "extended",
             before: None,
             after: None,
             noise_floor: WrenchError { force_rms_n: 0.1, torque_rms_nm: 0.01 },
             components: Vec::new(),
-            alike,
+            alike: Vec::new(),
             geometry,
             tried: Vec::new(),
         };
         let warns = |gap: WrenchGap| gap.in_words().iter().any(|sentence| sentence.contains("weigh the platform"));
-        assert!(warns(gap(WrenchReference::Mass, Vec::new(), vec![mass.clone()])));
-        assert!(warns(gap(WrenchReference::Mass, vec!["sensor_gain"], Vec::new())));
-        assert!(!warns(gap(WrenchReference::Mass, vec!["stribeck"], Vec::new())));
-        assert!(!warns(gap(WrenchReference::Measured, Vec::new(), vec![mass])));
+        assert!(warns(gap(WrenchReference::Mass, vec![mass.clone()])));
+        assert!(!warns(gap(WrenchReference::Mass, Vec::new())));
+        assert!(!warns(gap(WrenchReference::Measured, vec![mass])));
     }
 }

@@ -1,5 +1,6 @@
 //! Models of all cables, fitted jointly to the wrench on the platform.
 
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
 use fric_core::effects::Effect;
@@ -313,17 +314,18 @@ impl<'a> Bench<'a> {
         white_noise(&taken.map(|(number, _)| number).collect::<Vec<f64>>())
     }
 
-    /// Returns the mean squared whitened deviation if the force of each cable has an error of this fraction of its tension, and all errors add up.
-    pub fn believed_square(&self, model: &Model, ratio: f64) -> f64 {
+    /// Returns the mean squared whitened deviation if the forces of these cables have errors of this fraction of their tensions that add up.
+    pub fn believed_square(&self, model: &Model, ratio: f64, cables: Range<usize>) -> f64 {
         let (structure, _) = self.description.changed(&model.changes);
+        let records = self.records.get(cables.clone()).unwrap_or_default();
         let (mut sum, mut count) = (0.0, 0.0);
         for place in (0..self.counts.len()).filter(|place| self.counts[*place]) {
-            let columns = structure.iter().skip(place * self.records.len());
+            let columns = structure.iter().skip(place * self.records.len() + cables.start);
             let error = |(record, column): (&CableRecord<'_>, &Vector6<f64>)| {
                 let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
                 (self.whitening * column).abs() * (ratio * sensor_n * record.params.frictionless_gain()).abs()
             };
-            sum += self.records.iter().zip(columns).map(error).sum::<Vector6<f64>>().norm_squared();
+            sum += records.iter().zip(columns).map(error).sum::<Vector6<f64>>().norm_squared();
             count += 1.0;
         }
         if count > 0.0 { sum / count } else { 0.0 }

@@ -38,6 +38,14 @@ impl Candidate {
         }
     }
 
+    /// Returns its name without the cables.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Self::Alike(effect) | Self::Own(_, effect) => effect.kind(),
+            Self::Geometry(of) => of.key(),
+        }
+    }
+
     /// Whether a model already has it. An effect of all cables counts as present if any cable has that effect.
     pub fn is_in(self, model: &Model) -> bool {
         match self {

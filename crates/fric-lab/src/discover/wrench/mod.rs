@@ -24,7 +24,7 @@ use nalgebra::{Matrix6, Vector6};
 
 use self::bench::{Bench, Trial};
 use self::geometry::{Changes, Description};
-use self::naming::{Naming, Search};
+use self::naming::{Believed, Naming, Search};
 use self::sensors::Sensors;
 use super::cable::{BELIEVED_RATIO, acts};
 use super::extended::extended;
@@ -132,11 +132,16 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     for _ in 0..LOOKS {
         bench.whitening = whitening(&bench, &naming.trial.model).ok_or_else(too_short)?;
         let noise = noise_of(&bench, &naming.trial).ok_or_else(too_short)?;
-        let believed_square = bench.believed_square(&naming.trial.model, BELIEVED_RATIO);
-        let noise_square = bench.unit_square(&naming.trial.model)
-            * (noise.iter().map(|noise| noise * noise).sum::<f64>() + believed_square);
+        let believed_square = |cables| bench.believed_square(&naming.trial.model, BELIEVED_RATIO, cables);
+        let count = bench.records.len();
+        let unit_square = bench.unit_square(&naming.trial.model);
+        let believed = Believed {
+            apart: unit_square * (0..count).map(|cable| believed_square(cable..cable + 1)).sum::<f64>(),
+            together: unit_square * believed_square(0..count),
+        };
+        let noise_square = unit_square * noise.iter().map(|noise| noise * noise).sum::<f64>() + believed.apart;
         let again = bench.judged(base.model.clone());
-        let search = Search::new(&bench, again, noise_square);
+        let search = Search::new(&bench, again, noise_square, believed);
         let before = naming.named.iter().map(|named| named.candidate).collect::<Vec<_>>();
         naming = search.run(&naming.named, &naming.trial.model);
         progress.finish_one();

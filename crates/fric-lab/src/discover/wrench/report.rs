@@ -85,9 +85,8 @@ impl Case<'_, '_> {
             platform_m: (0..count).map(|cable| point(Geometry::Attachment(cable))).collect(),
         };
         let tried = naming.tried.iter().filter_map(|tried| match tried.candidate {
-            Candidate::Alike(effect) => Some((effect.kind().to_owned(), tried.refusal)),
-            Candidate::Geometry(of) => Some((of.key().to_owned(), tried.refusal)),
             Candidate::Own(..) => None,
+            all => Some((all.kind().to_owned(), tried.refusal)),
         });
         Ok(WrenchDiscovery {
             reference: description.reference,

@@ -74,7 +74,7 @@ impl Search<'_, '_> {
 
     /// Returns the decrease of the held-out squares that a candidate needs to enter.
     fn least_gain(&self, trial: &Trial) -> f64 {
-        let noise = self.noise_squares(true);
+        let noise = self.held_out_squares(self.noise_square);
         (LEAST_GAIN * (trial.held_out - noise)).max(LEAST_SIZE * noise)
     }
 

@@ -1,5 +1,7 @@
 //! The models that a search has fitted, and the comparison of two of them.
 
+use std::collections::BTreeMap;
+
 use fric_core::effects::Effect;
 use fric_core::parameters::MU;
 use rayon::prelude::*;
@@ -15,13 +17,11 @@ use crate::discover::wrench::candidate::Candidate;
 use crate::discover::wrench::geometry::Geometry;
 use crate::discover::wrench::screen::{Promise, Promises, promises};
 use crate::effects::{self, Around};
-use crate::fit::Parameter;
 use crate::replay::WrenchReference;
 
-/// Number of candidates beside a model that are fitted: those that promise most.
+/// Number of candidates beside a model that are fitted: those that promise most, and of one kind, such as a gain on different cables, at most so many.
 const FITTED: usize = 6;
-/// Usual relative error of the sensor gains that all cables have alike.
-const USUAL_GAIN: f64 = 0.02;
+const FITTED_OF_KIND: usize = 2;
 
 impl Search<'_, '_> {
     /// Returns the model with these candidates. A new set is fitted from the best known model with one candidate more.
@@ -53,8 +53,14 @@ impl Search<'_, '_> {
     /// Returns the models with one more of the most promising candidates, without those that were set aside.
     pub(super) fn beside(&mut self, found: &[Candidate]) -> Vec<(Candidate, Trial)> {
         let all: Vec<Candidate> = self.promises(found).of_candidates.iter().map(|promise| promise.candidate).collect();
+        let mut of_kinds: BTreeMap<&str, usize> = BTreeMap::new();
+        let is_first = |candidate: &Candidate| {
+            let count = of_kinds.entry(candidate.kind()).or_default();
+            *count += 1;
+            *count <= FITTED_OF_KIND
+        };
         let open = all.into_iter().filter(|candidate| !self.refused.contains_key(candidate));
-        let most_promising: Vec<Candidate> = open.take(FITTED).collect();
+        let most_promising: Vec<Candidate> = open.filter(is_first).take(FITTED).collect();
         self.each_beside(found, &most_promising)
     }
 
@@ -101,10 +107,14 @@ impl Search<'_, '_> {
             let trial = self.fit(found);
             let around = self.around(&trial, true);
             let model = &trial.model;
+            // By the weight alone, gains of all sensors that are wrong alike show as a wrong mass does, which is the likelier cause.
+            let by_weight = self.bench.description.reference == WrenchReference::Mass;
+            let is_mass = |of: Candidate| by_weight && of == Candidate::Alike(Effect::SensorGain);
             // This search names one ripple of each kind on a cable.
             let is_wanted = |candidate: Candidate| {
                 !candidate.effect().is_some_and(Effect::is_second)
                     && !candidate.is_in(model)
+                    && !is_mass(candidate)
                     && !scales_all(self.bench, model, candidate)
             };
             let mut all = promises(self.bench, model, &around, is_wanted);
@@ -131,14 +141,14 @@ impl Search<'_, '_> {
 
     /// Returns the squared deviations of the held-out samples above the noise, as a fraction of the noise.
     pub(super) fn excess(&self, trial: &Trial) -> f64 {
-        trial.held_out / self.noise_squares(true) - 1.0
+        trial.held_out / self.held_out_squares(self.noise_square) - 1.0
     }
 
-    /// Returns the expected sum of squares of the noise over the held-out samples, or over the training samples.
-    pub(super) fn noise_squares(&self, held_out: bool) -> f64 {
+    /// Returns the sum over the held-out samples of so much in each.
+    pub(super) fn held_out_squares(&self, square: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = self.bench.count(held_out) as f64;
-        count * self.noise_square
+        let count = self.bench.count(true) as f64;
+        count * square
     }
 
     /// Returns the BIC difference from one model to another with `more` additional parameters; a negative value favours the second.
@@ -148,21 +158,13 @@ impl Search<'_, '_> {
         delta_bic(count, to.training / from.training, more) + self.oddity(to) - self.oddity(from)
     }
 
-    /// Returns the evidence against a model that is known before any sample: points and the vertical are seldom far off, and the gains of all sensors
-    /// are seldom wrong alike, which the weight cannot distinguish from a wrong mass.
+    /// Returns the evidence against a model that is known before any sample: points and the vertical are seldom far off.
     pub(super) fn oddity(&self, trial: &Trial) -> f64 {
-        let model = &trial.model;
         let of = |(of, numbers): (&Geometry, &Vec<f64>)| {
             let usual = self.bench.description.usual(*of);
             numbers.iter().map(|number| (number / usual).powi(2)).sum::<f64>()
         };
-        let is_gain = |of: &&Parameter| of.effect() == Some(Effect::SensorGain);
-        let by_weight = self.bench.description.reference == WrenchReference::Mass;
-        let gain = model.alike.iter().find(is_gain).filter(|_| by_weight);
-        let of_gain = gain
-            .zip(model.values.first())
-            .map_or(0.0, |(of, values)| ((values[of.place()] - of.row().neutral) / USUAL_GAIN).powi(2));
-        model.changes.iter().map(of).sum::<f64>() + of_gain
+        trial.model.changes.iter().map(of).sum()
     }
 
     /// Whether a parameter of a candidate is stuck at a bound of its range.

@@ -45,7 +45,8 @@ impl Search<'_, '_> {
         let Standing { inflation, away } = *standing;
         let without = self.fit(&without(found, candidate));
         let delta_bic = self.delta_bic(&without, trial, candidate.count(), inflation);
-        let is_small = without.held_out - trial.held_out <= LEAST_SIZE * self.noise_squares(true);
+        let least_square = (LEAST_SIZE * self.noise_square).max(self.believed.of(candidate));
+        let is_small = without.held_out - trial.held_out <= self.held_out_squares(least_square);
         let refusal = if self.is_at_end(candidate, trial) {
             Some(Refusal::AtBound)
         } else if is_small

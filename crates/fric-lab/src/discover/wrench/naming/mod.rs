@@ -90,11 +90,30 @@ impl Naming {
     }
 }
 
+/// Mean squared whitened deviation of a sample that friction models make which are not exact.
+pub struct Believed {
+    /// If the errors of the cables are independent.
+    pub apart: f64,
+    /// If they add up, as those of a law that all cables have alike.
+    pub together: f64,
+}
+
+impl Believed {
+    /// Returns what a candidate must explain more than.
+    fn of(&self, candidate: Candidate) -> f64 {
+        match candidate {
+            Candidate::Own(..) => self.apart,
+            Candidate::Alike(_) | Candidate::Geometry(_) => self.together,
+        }
+    }
+}
+
 /// A search. Every set of candidates is fitted and screened once.
 pub struct Search<'b, 'a> {
     bench: &'b Bench<'a>,
-    /// Mean squared whitened deviation of a sample by noise alone.
+    /// Mean squared whitened deviation of a sample by noise, and by independent errors of the cables' friction models.
     noise_square: f64,
+    believed: Believed,
     /// Fitted models by the candidates in them, in order.
     fits: BTreeMap<Vec<Candidate>, Trial>,
     /// What further candidates promise beside such a model.
@@ -105,10 +124,11 @@ pub struct Search<'b, 'a> {
 
 impl<'b, 'a> Search<'b, 'a> {
     /// Starts a search from the fitted given model.
-    pub fn new(bench: &'b Bench<'a>, base: Trial, noise_square: f64) -> Self {
+    pub fn new(bench: &'b Bench<'a>, base: Trial, noise_square: f64, believed: Believed) -> Self {
         Self {
             bench,
             noise_square,
+            believed,
             fits: BTreeMap::from([(Vec::new(), base)]),
             promised: BTreeMap::new(),
             refused: BTreeMap::new(),
@@ -124,13 +144,13 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         let mut named = Vec::new();
         for _ in 0..ROUNDS {
-            let (set, refused) = (set_of(&found), self.refused.len());
+            let refused = self.refused.len();
             self.enter(&mut found);
             self.unite(&mut found);
             self.take_apart(&mut found);
             named = self.leave(&mut found);
             let is_exchanged = self.exchange(&mut found);
-            if !is_exchanged && (set_of(&found) == set || self.refused.len() == refused) {
+            if !is_exchanged && self.refused.len() == refused {
                 break;
             }
         }
