@@ -8,7 +8,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use super::spectrum::{NEIGHBOURS, STRETCH, Spectrum, Times, Together, have_line};
+use super::spectrum::{NEIGHBOURS, Occurrence, STRETCH, Spectrum, Times, Together, goes_on, occurrences};
 use super::{Fault, RecordingFault};
 
 /// By how many times their median it stands out.
@@ -20,12 +20,10 @@ const MOST_LINES: usize = 8;
 /// And the least share of the noise's power that one has to have.
 pub const LEAST_SHARE: f64 = 0.01;
 
-/// Length of the windows over which the power of a line is compared, in rows; the number of samples that a window needs, since with fewer it has more
-/// noise; and the least ratio of the median of the power to its mean. What is there in less than
-/// half of the windows has a median of nearly 0; hum that is twice as high in two fifths of a log has 0.45.
+/// Length of the windows over which the power of a line is compared, in rows, and the number of samples that a window needs, since with fewer it has
+/// more noise.
 const WINDOW: usize = STRETCH / 4;
 const FEWEST_IN_WINDOW: f64 = 512.0;
-const LEAST_MEDIAN_RATIO: f64 = 0.25;
 
 /// A sine of a fixed frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,27 +87,24 @@ pub fn lines(residual: &[f64], times: &Times, signals: &[Together<'_>]) -> Vec<L
     }
     if !lines.is_empty() {
         let frequencies: Vec<f64> = lines.iter().map(|line: &Line| line.frequency_hz).collect();
-        let mut of_motion = have_line(&frequencies, signals, times).into_iter();
-        lines.retain(|line| !of_motion.next().unwrap_or(false) && goes_on(line.frequency_hz, residual, times));
+        // What makes a line that goes on throughout the log does so itself.
+        let mut in_motion = occurrences(&frequencies, signals, times).into_iter();
+        lines.retain(|line| {
+            in_motion.next() != Some(Occurrence::Throughout) && goes_on(powers(line.frequency_hz, residual, times))
+        });
     }
     lines
 }
 
-/// Whether an oscillation of a frequency goes on throughout the log. One with fewer than [`FEWEST_TURNS`] in a window is taken to do so.
-fn goes_on(frequency_hz: f64, residual: &[f64], times: &Times) -> bool {
+/// Returns the power of an oscillation of a frequency in each window of the log: 0 where a window has fewer than [`FEWEST_TURNS`] of it.
+fn powers(frequency_hz: f64, residual: &[f64], times: &Times) -> Vec<f64> {
     let windows =
         times.runs.iter().flat_map(|run| run.clone().step_by(WINDOW).map(|start| start..(start + WINDOW).min(run.end)));
     let wave =
         |rows: Range<usize>| project_run(residual.get(rows.clone()).unwrap_or_default(), frequency_hz, times, &rows);
-    let mut powers: Vec<f64> = windows
-        .map(wave)
-        .filter(|wave| wave.count > FEWEST_IN_WINDOW)
-        .map(|wave| wave.sine * wave.sine + wave.cosine * wave.cosine)
-        .collect();
-    powers.sort_unstable_by(f64::total_cmp);
-    #[expect(clippy::cast_precision_loss, reason = "a count of windows")]
-    let mean = powers.iter().sum::<f64>() / powers.len() as f64;
-    powers.get(powers.len() / 2).is_none_or(|median| *median >= LEAST_MEDIAN_RATIO * mean)
+    let is_enough = |wave: &Wave| wave.count > FEWEST_IN_WINDOW;
+    let power = |wave: Wave| wave.sine * wave.sine + wave.cosine * wave.cosine;
+    windows.map(wave).filter(is_enough).map(power).collect()
 }
 
 fn strongest(residual: &[f64], times: &Times) -> Option<Line> {
@@ -266,6 +261,28 @@ mod tests {
         assert!((found[0].frequency_hz - 50.0).abs() < 1e-2);
         // A line in one sensor alone may be that sensor's own hum.
         assert_eq!(lines(&residual, &of_log, &[vec![signal(&motion), signal(&noise(6))]]).len(), 2);
+    }
+
+    /// A motion that oscillates at 50 Hz in its first second only does not cause a line that goes on for the whole of a log.
+    #[test]
+    fn a_start_of_the_motion_hides_no_hum() {
+        let mut residual = noise(7)[..20_000].to_vec();
+        let mut motion = noise(8)[..20_000].to_vec();
+        for (cycle, (number, way)) in residual.iter_mut().zip(&mut motion).enumerate() {
+            #[expect(clippy::cast_precision_loss, reason = "a small count")]
+            let wave = (TAU * 50.0 * cycle as f64 * 1e-3).sin();
+            *number += wave;
+            *way += if cycle < 1000 { 10.0 * wave } else { 0.0 };
+        }
+        let of_log = times(residual.len());
+        let signal = |numbers: Vec<f64>| -> Together<'static> { vec![Box::new(move |row| numbers[row])] };
+        let place = (50.0 / of_log.place_hz()).round();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place of the spectrum")]
+        let height = Spectrum::of(&motion, &of_log).unwrap().over_median(place as usize).unwrap();
+        assert!(height > 10.0, "{height}");
+        assert_eq!(lines(&residual, &of_log, &[signal(motion)]).len(), 1);
+        let throughout = residual.iter().zip(noise(9)).map(|(number, noise)| number + noise).collect();
+        assert_eq!(lines(&residual, &of_log, &[signal(throughout)]), []);
     }
 
     /// A hum that stops for three of five seconds is something else. One whose frequency wanders as that of the mains does is a hum.

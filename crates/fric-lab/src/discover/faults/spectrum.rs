@@ -18,6 +18,9 @@ pub const NEIGHBOURS: usize = 24;
 pub const LINE_WIDTH: usize = 3;
 /// By how many times their median a line of the motion or the load stands out: less than this may be chance in a few tens of spectra averaged.
 const MOTION_RATIO: f64 = 4.0;
+/// The least ratio of the median of a power over the log to its mean of what goes on. What is there in less than half of the log has a median of nearly
+/// 0; hum that is twice as high in two fifths of a log has 0.45.
+const LEAST_MEDIAN_RATIO: f64 = 0.25;
 /// A log whose samples are as far apart as the cycles, but for this share, is that of the loop.
 const RATE_TOLERANCE: f64 = 0.1;
 
@@ -108,10 +111,16 @@ pub struct Spectrum {
 impl Spectrum {
     /// Of a signal with a number for each row, NaN where there is none; `None` where no run is as long as a stretch.
     pub fn of(signal: &[f64], times: &Times) -> Option<Self> {
+        Self::watching(signal, times, |_| ())
+    }
+
+    /// As [`Self::of`]; `watch` is shown the powers of each stretch, in a unit of its own.
+    fn watching(signal: &[f64], times: &Times, mut watch: impl FnMut(&[f64])) -> Option<Self> {
         let transform = RealFftPlanner::<f64>::new().plan_fft_forward(STRETCH);
         let mut input = transform.make_input_vec();
         let mut output = transform.make_output_vec();
-        let mut powers = vec![0.0; output.len()];
+        let mut of_stretch = vec![0.0; output.len()];
+        let mut powers = of_stretch.clone();
         let mut stretches = 0.0;
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
         let window = |place: usize| 0.5 - 0.5 * (TAU * place as f64 / STRETCH as f64).cos();
@@ -121,7 +130,9 @@ impl Spectrum {
                 times.spread(&stretch, signal.get(stretch.clone())?, &mut input);
                 input.iter_mut().enumerate().for_each(|(place, number)| *number *= window(place));
                 transform.process(&mut input, &mut output).ok()?;
-                powers.iter_mut().zip(&output).for_each(|(sum, number)| *sum += number.norm_sqr());
+                of_stretch.iter_mut().zip(&output).for_each(|(power, number)| *power = number.norm_sqr());
+                watch(&of_stretch);
+                powers.iter_mut().zip(&of_stretch).for_each(|(sum, power)| *sum += power);
                 stretches += 1.0;
             }
         }
@@ -135,13 +146,24 @@ impl Spectrum {
         (stretches > 0.0).then_some(Self { powers, stretches })
     }
 
-    /// Whether it has a line at a frequency.
-    pub fn has_line(&self, frequency_hz: f64, times: &Times) -> bool {
-        let place = frequency_hz / times.place_hz();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place of the spectrum")]
-        let place = place.round() as usize;
-        (place.saturating_sub(1)..=place + 1)
-            .any(|place| self.over_median(place).is_some_and(|ratio| ratio > MOTION_RATIO))
+    /// When a signal has a line near each of some places.
+    fn lines_near(places: &[usize], signal: &[f64], times: &Times) -> Option<Vec<Occurrence>> {
+        let near = |place: &usize| place.saturating_sub(1)..=place + 1;
+        let mut of_stretches = vec![Vec::new(); places.len()];
+        let spectrum = Self::watching(signal, times, |powers| {
+            for (place, of_stretches) in places.iter().zip(&mut of_stretches) {
+                of_stretches.push(powers.get(near(place)).unwrap_or_default().iter().sum());
+            }
+        })?;
+        let when = |(place, of_stretches): (&usize, Vec<f64>)| {
+            let stands_out = |place| spectrum.over_median(place).is_some_and(|ratio| ratio > MOTION_RATIO);
+            match near(place).any(stands_out) {
+                true if goes_on(of_stretches) => Occurrence::Throughout,
+                true => Occurrence::Sometimes,
+                false => Occurrence::Never,
+            }
+        };
+        Some(places.iter().zip(of_stretches).map(when).collect())
     }
 
     /// By how many times the median of its neighbours a place stands out.
@@ -174,17 +196,39 @@ pub type Signal<'a> = Box<dyn Fn(usize) -> f64 + 'a>;
 /// Signals that only together tell a line: each may hum by itself.
 pub type Together<'a> = Vec<Signal<'a>>;
 
-/// Whether any of the signals has a line at a frequency, for each of some.
-pub fn have_line(frequencies_hz: &[f64], signals: &[Together<'_>], times: &Times) -> Vec<bool> {
-    let spectrum_of = |signal: &Signal<'_>| {
+/// When a line is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Occurrence {
+    Never,
+    /// In few stretches of the log: even a smooth motion has some frequency at which its start stands out.
+    Sometimes,
+    Throughout,
+}
+
+/// Returns when any of the signals has a line at a frequency, for each of some.
+pub fn occurrences(frequencies_hz: &[f64], signals: &[Together<'_>], times: &Times) -> Vec<Occurrence> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place of the spectrum")]
+    let places: Vec<usize> =
+        frequencies_hz.iter().map(|frequency_hz| (frequency_hz / times.place_hz()).round() as usize).collect();
+    let of_signal = |signal: &Signal<'_>| {
         let numbers: Vec<f64> = (0..times.places.len()).map(signal).collect();
-        Spectrum::of(&numbers, times)
+        Spectrum::lines_near(&places, &numbers, times)
     };
-    let spectra: Vec<Vec<Spectrum>> = signals.iter().map(|of| of.iter().filter_map(spectrum_of).collect()).collect();
-    let has = |frequency_hz: &f64| {
-        spectra.iter().any(|of| !of.is_empty() && of.iter().all(|spectrum| spectrum.has_line(*frequency_hz, times)))
+    let of_signals: Vec<Vec<Vec<Occurrence>>> =
+        signals.iter().map(|of| of.iter().filter_map(of_signal).collect()).collect();
+    let when = |line: usize| {
+        let together = |of: &Vec<Vec<Occurrence>>| of.iter().filter_map(|of| of.get(line)).min().copied();
+        of_signals.iter().filter_map(together).max().unwrap_or(Occurrence::Never)
     };
-    frequencies_hz.iter().map(has).collect()
+    (0..places.len()).map(when).collect()
+}
+
+/// Whether what has these powers one after the other goes on all the time.
+pub fn goes_on(mut powers: Vec<f64>) -> bool {
+    powers.sort_unstable_by(f64::total_cmp);
+    #[expect(clippy::cast_precision_loss, reason = "a count of stretches")]
+    let mean = powers.iter().sum::<f64>() / powers.len() as f64;
+    powers.get(powers.len() / 2).is_none_or(|median| *median >= LEAST_MEDIAN_RATIO * mean)
 }
 
 /// What a cable does and bears: the motion, with the harmonics that a law of friction makes of a periodic one, and the load as both of its sensors

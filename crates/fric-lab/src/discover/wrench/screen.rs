@@ -162,7 +162,9 @@ pub fn promises(
         offer(Promise { candidate, model: beside(model, candidate, &[start]), gain });
     }
     let mut of_gains = 0.0;
-    for effect in Effect::ALL.iter().copied().filter(|effect| is_wanted(Candidate::Alike(*effect))) {
+    // The gains of all sensors together are asked for even if one gain of all is not wanted.
+    let is_asked = |effect: &Effect| *effect == Effect::SensorGain || is_wanted(Candidate::Alike(*effect));
+    for effect in Effect::ALL.iter().copied().filter(is_asked) {
         let of_cable = |cable: usize| {
             let places = all_starts.iter().enumerate().filter(move |(_, of)| of.cable == cable && of.effect == effect);
             places.map(|(place, _)| place).collect::<Vec<usize>>()

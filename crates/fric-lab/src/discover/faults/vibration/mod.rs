@@ -26,7 +26,7 @@ use realfft::num_complex::Complex;
 
 use self::search::loudest;
 use crate::discover::faults::lines::{LEAST_SHARE, Line, mean_square};
-use crate::discover::faults::spectrum::{LINE_WIDTH, Spectrum, Times, Together, have_line};
+use crate::discover::faults::spectrum::{LINE_WIDTH, Occurrence, Spectrum, Times, Together, occurrences};
 use crate::discover::faults::{Fault, RecordingFault};
 use crate::samples::conditions::sign;
 
@@ -154,9 +154,9 @@ pub fn vibration(residual_n: &[f64], times: &Times, way: &[Way], signals: &[Toge
     let spectrum = Spectrum::of(residual_n, times)?;
     let found = loudest(&spectrum, times)?;
     let is_worth_it = found.rms_n().powi(2) > LEAST_SHARE * mean_square(residual_n);
-    let is_of_motion = || have_line(&[found.frequency_hz], signals, times).contains(&true);
+    let in_motion = || occurrences(&[found.frequency_hz], signals, times);
     let follows_length = || share_of_length(&found, residual_n, way) > MOST_OF_LENGTH;
-    (is_worth_it && !is_of_motion() && !follows_length()).then_some(found)
+    (is_worth_it && in_motion() == [Occurrence::Never] && !follows_length()).then_some(found)
 }
 
 /// Returns the lines that hum: those that keep their phase.

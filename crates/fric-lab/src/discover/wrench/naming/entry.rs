@@ -4,7 +4,7 @@ use fric_core::effects::Effect;
 
 use super::fits::scales_all;
 use super::standing::standings;
-use super::{LEAST_AWAY, MOST, NEAR_ERRORS, Search, set_of};
+use super::{LEAST_ALIKE, LEAST_AWAY, MOST, NEAR_ERRORS, Search, set_of};
 use crate::candidates::catalogue::{fitted, has};
 use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::{LEAST_GAIN, LEAST_SIZE, NEGLIGIBLE, Refusal, STRONG_BIC};
@@ -12,9 +12,6 @@ use crate::discover::wrench::bench::{Model, Trial};
 use crate::discover::wrench::candidate::Candidate;
 use crate::discover::wrench::screen::Promises;
 use crate::fit::Parameter;
-
-/// Minimum number of cables with the same effect that may become one effect of all cables, or that let the sensors of all be doubted.
-const LEAST_ALIKE: usize = 3;
 
 impl Search<'_, '_> {
     /// Adds candidates as long as they help, each time the one with the most evidence.

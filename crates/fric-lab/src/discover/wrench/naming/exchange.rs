@@ -1,9 +1,14 @@
 //! The comparison of each name with other candidates in its place.
 
+use super::fits::scales_all;
 use super::{Search, Tried, without};
 use crate::discover::naming::{NEGLIGIBLE, Refusal, STRONG_BIC};
 use crate::discover::wrench::bench::Trial;
 use crate::discover::wrench::candidate::Candidate;
+use crate::discover::wrench::geometry::Geometry;
+
+/// The parameter that the weight cannot tell from a wrong mass.
+const GAIN: &str = "sensor_gain.gain";
 
 impl Search<'_, '_> {
     /// Replaces each name by the best other candidate if that one is better. Returns whether a name was replaced.
@@ -55,18 +60,23 @@ impl Search<'_, '_> {
     /// Returns the candidates that help the model with all names but do not suffice, the best first.
     pub(super) fn tried(&mut self, found: &[Candidate]) -> Vec<Tried> {
         let trial = self.fit(found);
-        if self.excess(&trial) <= NEGLIGIBLE {
-            return Vec::new();
+        let mut tried = Vec::new();
+        if self.excess(&trial) > NEGLIGIBLE {
+            let helping = self.beside(found).into_iter().filter(|(_, with)| with.held_out < trial.held_out);
+            tried.extend(helping.map(|(candidate, with)| {
+                let inflation = self.inflation(candidate, &with);
+                let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
+                let refusal = if self.is_at_end(candidate, &with) { Refusal::AtBound } else { Refusal::Weak };
+                Tried { candidate, delta_bic, refusal }
+            }));
         }
-        let helping = self.beside(found).into_iter().filter(|(_, with)| with.held_out < trial.held_out);
-        let tried = helping.map(|(candidate, with)| {
-            let inflation = self.inflation(candidate, &with);
-            let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
-            let refusal = if self.is_at_end(candidate, &with) { Refusal::AtBound } else { Refusal::Weak };
-            Tried { candidate, delta_bic, refusal }
-        });
-        let mut tried: Vec<Tried> = tried.filter(|tried| tried.delta_bic < 0.0).collect();
+        tried.retain(|tried: &Tried| tried.delta_bic < 0.0);
         tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
+        // If every sensor has a gain of its own, the weight does not show the mass.
+        let mass = Candidate::Geometry(Geometry::Mass);
+        if scales_all(self.bench, &trial.model, mass) {
+            tried.push(Tried { candidate: mass, delta_bic: 0.0, refusal: Refusal::Open(GAIN) });
+        }
         tried
     }
 }

@@ -7,7 +7,7 @@ use fric_core::parameters::MU;
 use rayon::prelude::*;
 
 use super::standing::standings;
-use super::{NEAR_ERRORS, Search, set_of};
+use super::{LEAST_ALIKE, NEAR_ERRORS, Search, set_of};
 use crate::candidates::catalogue::{around, has};
 use crate::candidates::ripple::{period_of, periods};
 use crate::discover::naming::evidence::delta_bic;
@@ -107,14 +107,19 @@ impl Search<'_, '_> {
             let trial = self.fit(found);
             let around = self.around(&trial, true);
             let model = &trial.model;
-            // By the weight alone, gains of all sensors that are wrong alike show as a wrong mass does, which is the likelier cause.
-            let by_weight = self.bench.description.reference == WrenchReference::Mass;
-            let is_mass = |of: Candidate| by_weight && of == Candidate::Alike(Effect::SensorGain);
+            // By the weight alone, gains of all sensors that are wrong alike show as a wrong mass does, which is the likelier cause. If several sensors need
+            // gains of their own, the sensors are, and the mass would only take the place of one of these gains.
+            let gains = model.values.iter().filter(|values| has(Effect::SensorGain, values)).count();
+            let unlikely = match self.bench.description.reference {
+                WrenchReference::Mass if gains < LEAST_ALIKE => Some(Candidate::Alike(Effect::SensorGain)),
+                WrenchReference::Mass => Some(Candidate::Geometry(Geometry::Mass)),
+                WrenchReference::Measured => None,
+            };
             // This search names one ripple of each kind on a cable.
             let is_wanted = |candidate: Candidate| {
                 !candidate.effect().is_some_and(Effect::is_second)
                     && !candidate.is_in(model)
-                    && !is_mass(candidate)
+                    && Some(candidate) != unlikely
                     && !scales_all(self.bench, model, candidate)
             };
             let mut all = promises(self.bench, model, &around, is_wanted);

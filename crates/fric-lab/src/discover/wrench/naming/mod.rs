@@ -36,6 +36,8 @@ const ROUNDS: usize = 6;
 const NEAR_ERRORS: f64 = 0.5;
 /// The parameters of a name together are at least this many standard errors away from their neutral values.
 const LEAST_AWAY: f64 = 4.0;
+/// Minimum number of cables with the same effect that may become one effect of all cables, or that let the sensors of all be doubted.
+const LEAST_ALIKE: usize = 3;
 
 /// A name with its evidence.
 #[derive(Clone, Debug)]
