@@ -3,12 +3,15 @@
 //! The additional fraction of μ falls with the speed as `exp(−(v/velocity)²)`, the law of the catalogue. The speed is the cable's momentary speed,
 //! also within the cycle.
 
+use fric_core::effects::stribeck::VELOCITY;
+use fric_core::parameters::Values;
+
 use super::truth::{Cause, Contact, TruthEffect};
-use super::{Around, LabEffect, Sizing, Start, always};
+use super::{Around, LabEffect, Sizing, Start};
 use crate::random::uniform;
 
 /// The effect's entry in the lab.
-pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual: always };
+pub const LAB: LabEffect = LabEffect { truth, starts, typical, is_more_than_usual };
 
 /// Start values of the speed at which friction changes, as fractions of the usual speed of the moving cable.
 const SPEED_SHARES: [f64; 2] = [0.04, 0.25];
@@ -39,4 +42,10 @@ fn starts(around: &Around) -> Vec<Start> {
 fn typical(scale: &mut Sizing<'_>) -> Start {
     let ratio = scale.about(0.6);
     vec![("ratio", ratio), ("velocity_m_per_s", 0.03 * uniform(scale.random, 0.85, 1.15))]
+}
+
+/// More slowly than the noise of the length moves it in a cycle, the cable does not show what friction it has: a contact that the noise shakes loose at rest
+/// looks the same.
+fn is_more_than_usual(values: &Values, around: &Around) -> bool {
+    values[VELOCITY] * around.cycle_s > around.length_noise_m
 }

@@ -50,7 +50,7 @@ pub struct Condition<'a> {
 
 impl<'a> Condition<'a> {
     /// Creates the condition from its value in each of the record's cycles; NaN if it has none.
-    fn new(
+    pub fn new(
         record: &CableRecord<'a>,
         (signal, unit, bins): (&'static str, &'static str, Spacing),
         of_cycle: impl Fn(usize) -> f64 + Send + Sync + 'a,

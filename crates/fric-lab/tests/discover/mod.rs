@@ -1,6 +1,7 @@
 //! Discovery on logs with known effects hidden in them; the whole sweep is `benches/discover.rs`.
 
 mod contacts;
+mod drift;
 mod drive;
 mod empirical;
 mod faulty;

@@ -8,7 +8,7 @@ use super::given::acts;
 use super::{BELIEVED_RATIO, CableLog};
 use crate::discover::effort::Effort;
 use crate::discover::naming::{Naming, Search};
-use crate::discover::rest::contacts::share_of_contacts;
+use crate::discover::rest::drift::Drift;
 use crate::discover::rest::places::Place;
 use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
 use crate::discover::rest::{WORTH, wander};
@@ -153,10 +153,12 @@ impl CableLog<'_> {
         let is_small = share <= WORTH;
         let stretch = if is_small { None } else { stretch_of_cable(&excess, self.conditions) };
         let is_noise = |wander: f64| share - wander <= WORTH * (1.0 + wander);
-        let mut wander = if is_small || stretch.is_some() { 0.0 } else { wander(&excess, &places) };
-        if wander > 0.0 && is_noise(wander) {
-            wander = wander.min(share * (1.0 - share_of_contacts(bench, model, &excess)));
-        }
+        let drift = if is_small || stretch.is_some() { None } else { Drift::of(&excess) };
+        let wander = drift.map_or(0.0, |drift| {
+            let wander = wander(&excess, &drift, &places);
+            let is_needed = wander > 0.0 && is_noise(wander);
+            if is_needed { wander.min(share * (1.0 - drift.share_of_cable(bench, model))) } else { wander }
+        });
         Some(Rest {
             noise_n,
             wander_n: noise_n * wander.sqrt(),

@@ -2,9 +2,10 @@
 //!
 //! Sensor drift is noise. It continues while the cable rests and is spread over the log. A rest is not drift if it changes with the motion or the
 //! load, is a function of a condition, is concentrated in a narrow stretch of time, or is many times the noise. Nor is it if it follows the past of the
-//! load ([`past`]), or is what contacts of another law leave ([`contacts`]).
+//! load ([`past`]), or is what friction of another law leaves ([`drift`], [`contacts`]).
 
 pub mod contacts;
+pub mod drift;
 pub mod empirical;
 pub mod neighbours;
 pub mod past;
@@ -13,13 +14,12 @@ pub mod stretch;
 
 use std::ops::Range;
 
+use self::drift::Drift;
 use self::past::share_of_past;
 use self::places::{Excess, Place};
 use crate::candidates::ripple::ripple_power;
 use crate::fit::Row;
 
-/// Maximum fraction of a drift that lies in one tenth of the log.
-const MOST_IN_TENTH: f64 = 0.6;
 /// Maximum fraction of a drift that is one level and one wave with a period above this value, s, computed from means over this time. Noise has no
 /// such long memory.
 const MOST_WAVE: f64 = 0.7;
@@ -38,17 +38,15 @@ pub const WORTH: f64 = 0.1;
 
 /// Returns the mean square of the sensors' drift in an excess, as a fraction of the noise variance. `places` are the conditions that the excess is a
 /// function of.
-pub fn wander(excess: &Excess<'_>, places: &[Place]) -> f64 {
-    let is_wander = excess.share() < MOST_WANDER * MOST_WANDER
-        && places.is_empty()
-        && share_of_tenth(excess) < MOST_IN_TENTH
-        && share_of_wave(excess) < MOST_WAVE;
+pub fn wander(excess: &Excess<'_>, drift: &Drift<'_, '_>, places: &[Place]) -> f64 {
+    let is_wander =
+        excess.share() < MOST_WANDER * MOST_WANDER && places.is_empty() && share_of_wave(excess) < MOST_WAVE;
     if !is_wander {
         return 0.0;
     }
     let [quick, quick_of_motion] = quick_shares(excess);
     let slow = (1.0 - quick) * (1.0 - share_of_motion(excess).max(share_of_past(excess)));
-    excess.share() * (slow + quick * (1.0 - quick_of_motion))
+    excess.share() * (slow + quick * (1.0 - quick_of_motion)) * drift.steady_share()
 }
 
 /// Returns the fraction of a residual's slow changes that comes with motion of the cable or a change of its load.
@@ -219,22 +217,6 @@ fn share_of_wave(excess: &Excess<'_>) -> f64 {
         half_waves.map(|half_waves| 2.0 * duration_s / half_waves).take_while(|period_s| *period_s > QUICKEST_S);
     let wave = periods_s.map(|period_s| ripple_power(&means, period_s)).fold(0.0, f64::max);
     samples / count * (count * level_n * level_n + wave) / excess.sum()
-}
-
-/// Returns the fraction of the excess in the tenth of the blocks that contains most of it.
-fn share_of_tenth(excess: &Excess<'_>) -> f64 {
-    let mut sums: Vec<f64> = excess
-        .blocks
-        .iter()
-        .map(|block| {
-            let of_block = excess.residual_n.get(block.cycles.clone()).unwrap_or_default();
-            let count = of_block.iter().filter(|number| number.is_finite());
-            count.map(|number| number * number - excess.noise_n * excess.noise_n).sum()
-        })
-        .collect();
-    sums.sort_by(|one: &f64, other| other.total_cmp(one));
-    let tenth = sums.len().div_ceil(10);
-    sums.iter().take(tenth).sum::<f64>() / excess.sum()
 }
 
 /// Returns the samples that count, and the sound samples between two of them, which lie on the line from one measurement to the next.

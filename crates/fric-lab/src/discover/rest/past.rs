@@ -12,7 +12,7 @@ pub const CREEP_S: [f64; 3] = [1.0, 4.0, 16.0];
 /// of the deviation explains 93 % of the rest, a quarter 82 %, all of it 65 %.
 const WIDTH_RATIOS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 /// Number of equal shifts of the residual against a signal through the log, which give the chance level.
-pub const SHIFTS: usize = 80;
+const SHIFTS: usize = 80;
 
 /// Returns the fraction of the excess that follows what the load has been; zero where this may be chance.
 ///

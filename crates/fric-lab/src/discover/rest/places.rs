@@ -16,7 +16,7 @@ use crate::samples::conditions::{Condition, sign};
 use crate::samples::split::Block;
 
 /// Minimum gain in standard errors; a smaller one is chance.
-const LEAST_SIGNIFICANCE: f64 = 4.0;
+pub const LEAST_SIGNIFICANCE: f64 = 4.0;
 /// Minimum concentration in standard errors; a smaller one may be chance.
 pub const LEAST_CONCENTRATION: f64 = 3.0;
 /// Minimum concentration to report, in standard errors.
@@ -91,6 +91,11 @@ impl Excess<'_> {
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let count = self.residual_n.iter().filter(|number| number.is_finite()).count() as f64;
         self.sum() / (count * self.noise_n * self.noise_n)
+    }
+
+    /// Returns the residuals that count of some cycles, N.
+    pub fn of_cycles(&self, cycles: Range<usize>) -> impl Iterator<Item = f64> {
+        self.residual_n.get(cycles).unwrap_or_default().iter().copied().filter(|number| number.is_finite())
     }
 
     fn of(&self, residual_n: f64) -> f64 {
@@ -294,7 +299,7 @@ impl Excess<'_> {
 }
 
 /// Returns by how many standard deviations a gain exceeds those obtained by chance.
-fn significance(found: f64, chances: &[f64]) -> f64 {
+pub fn significance(found: f64, chances: &[f64]) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let count = chances.len() as f64;
     let mean = chances.iter().sum::<f64>() / count;
