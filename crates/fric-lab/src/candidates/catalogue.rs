@@ -37,6 +37,7 @@ pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
     let presliding_m = mu * tension_n / record.params.values()[SIGMA];
     Around {
         cycle_s: record.cycle_s,
+        interval_s: record.interval_s,
         tension_n,
         mean_tension_n,
         noise_n,

@@ -35,6 +35,8 @@ pub struct LabEffect {
 pub struct Around {
     /// Cycle time, s.
     pub cycle_s: f64,
+    /// Time between two samples, s.
+    pub interval_s: f64,
     /// Root mean square of the cable tension, N.
     pub tension_n: f64,
     /// Mean of the cable tension, N.

@@ -44,8 +44,8 @@ fn typical(scale: &mut Sizing<'_>) -> Start {
     vec![("ratio", ratio), ("velocity_m_per_s", 0.03 * uniform(scale.random, 0.85, 1.15))]
 }
 
-/// More slowly than the noise of the length moves it in a cycle, the cable does not show what friction it has: a contact that the noise shakes loose at rest
-/// looks the same.
+/// Below the speed at which noise moves the length from sample to sample, the log does not show the cable's friction: contacts that the noise shakes loose
+/// at rest look the same.
 fn is_more_than_usual(values: &Values, around: &Around) -> bool {
-    values[VELOCITY] * around.cycle_s > around.length_noise_m
+    values[VELOCITY] * around.interval_s > around.length_noise_m
 }

@@ -25,8 +25,8 @@ struct Moment {
     drift: f64,
 }
 
-/// Looks at a log in which friction is greater by a factor, and the reference by a force, N.
-fn look(factor: fn(&Moment) -> f64, added_n: fn(&Moment) -> f64) -> CableDiscovery {
+/// Looks at a log in which friction is greater by a factor, and the reference by a force, N, and measured in some of the cycles.
+fn look(factor: fn(&Moment) -> f64, added_n: fn(&Moment) -> f64, is_measured: fn(i32) -> bool) -> CableDiscovery {
     let text = format!(
         "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = {CYCLE_S}\n[[cable]]\nname = \"w\"\n\
          pulleys = [{{ wrap_deg = 180.0 }}]\n\
@@ -54,10 +54,11 @@ fn look(factor: fn(&Moment) -> f64, added_n: fn(&Moment) -> f64) -> CableDiscove
         force_n = load_n - held_n - 0.5 * way_m / CYCLE_S;
         let cable =
             CableInput { sensor_force_n: force_n + NOISE_N * normal(), length_m, speed_m_per_s: way_m / CYCLE_S };
+        let reference_n = load_n + added_n(&moment) + NOISE_N * normal();
         measurements.add(&Sample {
             stamp_nanos: i64::from(cycle) * 2_000_000,
             cables: &[cable],
-            reference_force_n: &[load_n + added_n(&moment) + NOISE_N * normal()],
+            reference_force_n: &[if is_measured(cycle) { reference_n } else { f64::NAN }],
             pose: None,
             outside_wrench: None,
         });
@@ -66,7 +67,10 @@ fn look(factor: fn(&Moment) -> f64, added_n: fn(&Moment) -> f64) -> CableDiscove
 }
 
 fn assert_told(factor: fn(&Moment) -> f64, added_n: fn(&Moment) -> f64, verdict: Verdict) {
-    let found = look(factor, added_n);
+    assert_verdict(&look(factor, added_n, |_| true), verdict);
+}
+
+fn assert_verdict(found: &CableDiscovery, verdict: Verdict) {
     // A table is no name.
     let named: Vec<Effect> =
         found.findings.iter().map(|finding| finding.effect).filter(|effect| *effect != Effect::Empirical).collect();
@@ -76,6 +80,14 @@ fn assert_told(factor: fn(&Moment) -> f64, added_n: fn(&Moment) -> f64, verdict:
 #[test]
 fn a_drift_is_noise() {
     assert_told(|_| 1.0, |moment| 0.1 * moment.drift, Verdict::Complete);
+}
+
+/// Where nothing is measured, nothing is known; that is no silence.
+#[test]
+fn a_drift_is_noise_with_gaps() {
+    for is_measured in [|cycle: i32| cycle % 1_500 >= 500, |cycle: i32| !(6_000..13_000).contains(&cycle)] {
+        assert_verdict(&look(|_| 1.0, |moment| 0.1 * moment.drift, is_measured), Verdict::Complete);
+    }
 }
 
 /// At reversals such a friction jumps by more or less than the model says, and changes slowly between them.

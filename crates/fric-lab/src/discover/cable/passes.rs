@@ -8,7 +8,6 @@ use super::given::acts;
 use super::{BELIEVED_RATIO, CableLog};
 use crate::discover::effort::Effort;
 use crate::discover::naming::{Naming, Search};
-use crate::discover::rest::drift::Drift;
 use crate::discover::rest::places::Place;
 use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
 use crate::discover::rest::{WORTH, wander};
@@ -150,19 +149,14 @@ impl CableLog<'_> {
         let excess = self.excess(&residual_n, noise_n);
         let places = excess.places(self.conditions);
         let share = excess.share();
-        let is_small = share <= WORTH;
-        let stretch = if is_small { None } else { stretch_of_cable(&excess, self.conditions) };
-        let is_noise = |wander: f64| share - wander <= WORTH * (1.0 + wander);
-        let drift = if is_small || stretch.is_some() { None } else { Drift::of(&excess) };
-        let wander = drift.map_or(0.0, |drift| {
-            let wander = wander(&excess, &drift, &places);
-            let is_needed = wander > 0.0 && is_noise(wander);
-            if is_needed { wander.min(share * (1.0 - drift.share_of_cable(bench, model))) } else { wander }
-        });
+        let stretch = if share <= WORTH { None } else { stretch_of_cable(&excess, self.conditions) };
+        let found = if stretch.is_some() { None } else { wander(&excess, &places) };
+        let wander =
+            found.map_or(0.0, |(wander, drift)| wander.min(share * (1.0 - drift.share_of_cable(bench, model))));
         Some(Rest {
             noise_n,
             wander_n: noise_n * wander.sqrt(),
-            is_noise: is_noise(wander),
+            is_noise: share - wander <= WORTH * (1.0 + wander),
             places,
             stretch,
             residual_n,

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use fric_core::parameters::{MU, SIGMA, Values};
+use fric_core::parameters::{MU, SIGMA, VISCOUS, Values};
 use nalgebra::DMatrix;
 use realfft::RealFftPlanner;
 
@@ -18,7 +18,6 @@ use crate::discover::workbench::{Model, Workbench};
 use crate::fit::CableRecord;
 use crate::samples::bins::Bins;
 use crate::samples::conditions::{Condition, Spacing};
-use crate::samples::record::Row;
 use crate::search::problem::Problem;
 
 /// Windows that a record is divided into at most: of 2 ms in a minute, of 0.1 s in an hour.
@@ -42,14 +41,14 @@ pub struct Drift<'e, 'a> {
     process: Process,
 }
 
-/// Some cycles one after the other.
+/// Some cycles one after the other of which at least one counts.
 struct Window {
     cycles: Range<usize>,
-    /// Whether it is the first of its log.
-    is_first: bool,
+    /// Windows since the last one of its log; `None` for the first.
+    steps: Option<i32>,
     /// Number of samples that count.
     count: f64,
-    /// Their mean residual, N; 0 if there is none.
+    /// Their mean residual, N.
     residual_n: f64,
 }
 
@@ -65,32 +64,31 @@ struct Process {
 /// A Kalman filter of a process, of several signals at once.
 struct Filter {
     process: Process,
-    /// Variance of the prediction.
+    /// Variance of the estimates.
     variance: f64,
-    predictions: Vec<f64>,
+    estimates: Vec<f64>,
 }
 
 impl Filter {
     fn new(process: Process, signal_count: usize) -> Self {
-        Self { process, variance: process.power, predictions: vec![0.0; signal_count] }
+        Self { process, variance: process.power, estimates: vec![0.0; signal_count] }
     }
 
     /// Replaces the number of each signal in a window by what was not predicted, in standard deviations, and returns the variance of that.
     fn whiten(&mut self, window: &Window, numbers: &mut [f64]) -> f64 {
         let Process { correlation, power } = self.process;
-        if window.is_first {
-            *self = Self::new(self.process, self.predictions.len());
-        }
-        let is_known = window.count > 0.0;
-        let total = if is_known { self.variance + 1.0 / window.count } else { 1.0 };
-        let gain = if is_known { self.variance / total } else { 0.0 };
-        for (prediction, number) in self.predictions.iter_mut().zip(numbers) {
-            let surprise = if is_known { *number - *prediction } else { 0.0 };
-            *prediction = correlation * (*prediction + gain * surprise);
+        // A new log begins with an unknown drift.
+        let keeps = window.steps.map_or(0.0, |steps| correlation.powi(steps));
+        let predicted_variance = keeps * keeps * self.variance + (1.0 - keeps * keeps) * power;
+        let total = predicted_variance + 1.0 / window.count;
+        let gain = predicted_variance / total;
+        for (estimate, number) in self.estimates.iter_mut().zip(numbers) {
+            let prediction = keeps * *estimate;
+            let surprise = *number - prediction;
+            *estimate = prediction + gain * surprise;
             *number = surprise / total.sqrt();
         }
-        let forgets = 1.0 - correlation * correlation;
-        self.variance = (1.0 - forgets) * self.variance * (1.0 - gain) + forgets * power;
+        self.variance = (1.0 - gain) * predicted_variance;
         total
     }
 }
@@ -99,22 +97,25 @@ impl<'e, 'a> Drift<'e, 'a> {
     /// Returns the most likely drift of an excess.
     pub fn of(excess: &'e Excess<'a>) -> Option<Self> {
         let length = excess.residual_n.len().div_ceil(MOST_WINDOWS);
-        let window = |cycles: Range<usize>, is_first| {
-            let [mut sum_n, mut count] = [0.0, 0.0_f64];
-            for residual_n in excess.of_cycles(cycles.clone()) {
-                (sum_n, count) = (sum_n + residual_n, count + 1.0);
+        let mut windows: Vec<Window> = Vec::new();
+        for (start, rows) in excess.record.logs() {
+            let (end, mut steps) = (start + rows.len(), None);
+            for from in (start..end).step_by(length) {
+                let cycles = from..(from + length).min(end);
+                let [mut sum_n, mut count] = [0.0, 0.0];
+                for residual_n in excess.of_cycles(cycles.clone()) {
+                    (sum_n, count) = (sum_n + residual_n, count + 1.0);
+                }
+                steps = steps.map(|steps| steps + 1);
+                if count > 0.0 {
+                    windows.push(Window { cycles, steps, count, residual_n: sum_n / count });
+                    steps = Some(0);
+                }
             }
-            Window { cycles, is_first, count, residual_n: sum_n / count.max(1.0) }
-        };
-        let of_log = |(start, rows): (usize, &[Row])| {
-            let end = start + rows.len();
-            (start..end).step_by(length).map(move |from| window(from..(from + length).min(end), from == start))
-        };
-        let windows: Vec<Window> = excess.record.logs().flat_map(of_log).collect();
-        let known = || windows.iter().filter(|window| window.count > 0.0);
+        }
         #[expect(clippy::cast_precision_loss, reason = "a count of windows")]
-        let (count, known_count) = (windows.len() as f64, known().count() as f64);
-        let mean_count = known().map(|window| window.count).sum::<f64>() / known_count;
+        let count = windows.len() as f64;
+        let mean_count = windows.iter().map(|window| window.count).sum::<f64>() / count;
         // Of the white noise too, the most likely variance is taken.
         let likelihood = |process: &Process| {
             let (mut filter, mut logarithms, mut squares) = (Filter::new(*process, 1), 0.0, 0.0);
@@ -123,7 +124,7 @@ impl<'e, 'a> Drift<'e, 'a> {
                 logarithms += filter.whiten(window, &mut number).ln();
                 squares += number[0] * number[0];
             }
-            -logarithms - known_count * squares.ln()
+            -logarithms - count * squares.ln()
         };
         let tried = |[from, to]: [f64; 2]| {
             std::iter::successors(Some(from), |last| Some(last * STEP)).take_while(move |next| *next <= to)
@@ -137,32 +138,43 @@ impl<'e, 'a> Drift<'e, 'a> {
         Some(Self { excess, windows, process })
     }
 
-    /// Returns the fraction of the drift that is as large at any time. A drift is Gaussian; a few hits of the platform are not, nor is what happens in a
-    /// short part of the log.
+    /// Returns the fraction of the drift that is as large at any time of a log. A drift is Gaussian; a few hits of the platform are not, nor is what happens
+    /// in a short part of the log.
     pub fn steady_share(&self) -> f64 {
-        let (_, predictions) = self.filtered();
-        let Some(predictions) = with_surrogates(&predictions, DRAWS) else { return 1.0 };
-        let moment =
-            |numbers: &[f64], power: i32| mean(&numbers.iter().map(|number| number.powi(power)).collect::<Vec<_>>());
-        let kurtosis = |numbers: &[f64]| moment(numbers, 4) / moment(numbers, 2).powi(2);
-        let all: Vec<Vec<f64>> = predictions.column_iter().map(|column| column.iter().copied().collect()).collect();
-        let Some((found, by_chance)) = all.split_first() else { return 1.0 };
-        if by_chance.iter().any(|numbers| kurtosis(numbers) >= kurtosis(found)) {
+        let (_, mut estimates) = self.filtered();
+        let root_mean_square =
+            |numbers: &[f64]| mean(&numbers.iter().map(|number| number * number).collect::<Vec<_>>()).sqrt();
+        let mut rest = estimates.as_mut_slice();
+        for of_log in self.windows.chunk_by(|_, next| next.steps.is_some()) {
+            let Some((log, others)) = rest.split_at_mut_checked(of_log.len()) else { break };
+            // One day a sensor drifts more than on another.
+            let scale_n = root_mean_square(log);
+            for estimate in log.iter_mut() {
+                *estimate /= scale_n;
+            }
+            rest = others;
+        }
+        let fourth_moment = |numbers: &[f64]| numbers.iter().map(|number| number.powi(4)).sum::<f64>();
+        let found = fourth_moment(&estimates);
+        // Surrogates have the same sum of squares, so that this compares the kurtosis.
+        let Some(surrogates) = with_surrogates(&estimates, DRAWS) else { return 1.0 };
+        let by_chance = surrogates.as_slice().chunks(estimates.len()).skip(1).map(fourth_moment);
+        if by_chance.fold(0.0, f64::max) >= found {
             return 1.0;
         }
-        let mut sizes: Vec<f64> = found.iter().map(|number| number.abs()).collect();
+        let mut sizes: Vec<f64> = estimates.iter().map(|number| number.abs()).collect();
         sizes.sort_unstable_by(f64::total_cmp);
         let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-        ((DEVIATION_PER_MEDIAN * median).powi(2) / moment(found, 2)).min(1.0)
+        (DEVIATION_PER_MEDIAN * median / root_mean_square(&estimates)).powi(2).min(1.0)
     }
 
-    /// Returns, for each window, what the process does not predict of the residual, in standard deviations, and what it predicts of the next, N.
+    /// Returns, for each window, what the process does not predict of the residual, in standard deviations, and the drift, N.
     fn filtered(&self) -> (Vec<f64>, Vec<f64>) {
         let mut filter = Filter::new(self.process, 1);
         let filtered = self.windows.iter().map(|window| {
             let mut number = [window.residual_n];
             filter.whiten(window, &mut number);
-            (number[0], filter.predictions[0])
+            (number[0], filter.estimates[0])
         });
         filtered.unzip()
     }
@@ -175,18 +187,21 @@ impl<'e, 'a> Drift<'e, 'a> {
     }
 
     fn share_if_any(&self, bench: &Workbench<'_>, model: &Model) -> Option<f64> {
-        let record = self.excess.record;
-        let condition = |bins: Spacing, of_cycle: &dyn Fn(usize) -> f64| {
-            let values: Vec<f64> = (0..record.rows.len()).map(of_cycle).collect();
-            Condition::new(record, ("", "", bins), move |cycle| values.get(cycle).copied().unwrap_or(f64::NAN))
-        };
-        let length = condition(Spacing::Widths(CELLS), &|cycle| {
-            record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.length_m)
+        let record = *self.excess.record;
+        let row_of = move |cycle: usize| record.rows.get(cycle);
+        let length = Condition::new(&record, ("", "", Spacing::Widths(CELLS)), move |cycle| {
+            row_of(cycle).map_or(f64::NAN, |row| row.signals.length_m)
         });
-        let time = condition(Spacing::Widths(CELLS), &|cycle| record.time_s(cycle));
-        let speeds_m_per_s = remembered_speeds_m_per_s(record, &model.values);
-        let speed = condition(Spacing::Crowds(CELLS), &|cycle| speeds_m_per_s.get(cycle).copied().unwrap_or(f64::NAN));
-        let friction = bench.evaluated(&model.values);
+        let time = Condition::new(&record, ("", "", Spacing::Widths(CELLS)), move |cycle| record.time_s(cycle));
+        let speeds_m_per_s = remembered_speeds_m_per_s(&record, &model.values);
+        let speed = Condition::new(&record, ("", "", Spacing::Crowds(CELLS)), move |cycle| {
+            speeds_m_per_s.get(cycle).copied().unwrap_or(f64::NAN)
+        });
+        // What effects of the sensor add is no friction.
+        let mut frictionless = model.values;
+        (frictionless[MU], frictionless[VISCOUS]) = (0.0, 0.0);
+        let [with, without] = [model.values, frictionless].map(|values| bench.evaluated(&values));
+        let friction_n = |cycle: usize| with.added_n(cycle) - without.added_n(cycle);
         let (apart, innovations) = (self.of_parameters(bench, model), with_surrogates(&self.filtered().0, SURROGATES)?);
         let over = |condition: &Condition<'_>, signal_n: &dyn Fn(usize) -> f64| {
             let bins = Bins::new(condition, self.excess.residual_n)?;
@@ -199,7 +214,7 @@ impl<'e, 'a> Drift<'e, 'a> {
         let mut contacts = Contacts::of(bench, model);
         let of_contacts =
             self.share_of(&apart, &innovations, Contacts::COUNT, |cycle, numbers| contacts.write(cycle, numbers));
-        let of_friction = [&length, &speed, &time].map(|condition| over(condition, &|cycle| friction.added_n(cycle)));
+        let of_friction = [&length, &speed, &time].map(|condition| over(condition, &friction_n));
         of_friction.into_iter().chain([over(&length, &|_| 1.0), of_contacts]).flatten().max_by(f64::total_cmp)
     }
 
@@ -213,7 +228,7 @@ impl<'e, 'a> Drift<'e, 'a> {
             let place = self.windows.partition_point(|window| window.cycles.end <= cycle);
             let (Some(derivatives), Some(window)) = (of_cycle.next(), self.windows.get(place)) else { return };
             for (number, derivative) in rows.column_mut(place).iter_mut().skip(1).zip(derivatives.iter().take(count)) {
-                *number += derivative / window.count.max(1.0);
+                *number += derivative / window.count;
             }
         });
         rows

@@ -1,7 +1,7 @@
 //! Classifies the rest after naming: drift of the sensors, or something without a name.
 //!
 //! Sensor drift is noise. It continues while the cable rests and is spread over the log. A rest is not drift if it changes with the motion or the
-//! load, is a function of a condition, is concentrated in a narrow stretch of time, or is many times the noise. Nor is it if it follows the past of the
+//! load, is a function of a condition, is louder at some times than at others, or is many times the noise. Nor is it if it follows the past of the
 //! load ([`past`]), or is what friction of another law leaves ([`drift`], [`contacts`]).
 
 pub mod contacts;
@@ -36,17 +36,17 @@ const LEAST_RANKS_APART: f64 = 3.0;
 /// Minimum excess, as a fraction of the noise variance, that needs an explanation. The rms is then 5 % above the floor.
 pub const WORTH: f64 = 0.1;
 
-/// Returns the mean square of the sensors' drift in an excess, as a fraction of the noise variance. `places` are the conditions that the excess is a
-/// function of.
-pub fn wander(excess: &Excess<'_>, drift: &Drift<'_, '_>, places: &[Place]) -> f64 {
+/// Returns the mean square of the sensors' drift in an excess, as a fraction of the noise variance, with the drift; `None` if there is none. `places` are
+/// the conditions that the excess is a function of.
+pub fn wander<'e, 'a>(excess: &'e Excess<'a>, places: &[Place]) -> Option<(f64, Drift<'e, 'a>)> {
+    let share = excess.share();
     let is_wander =
-        excess.share() < MOST_WANDER * MOST_WANDER && places.is_empty() && share_of_wave(excess) < MOST_WAVE;
-    if !is_wander {
-        return 0.0;
-    }
+        share > WORTH && share < MOST_WANDER * MOST_WANDER && places.is_empty() && share_of_wave(excess) < MOST_WAVE;
+    let drift = if is_wander { Drift::of(excess)? } else { return None };
     let [quick, quick_of_motion] = quick_shares(excess);
     let slow = (1.0 - quick) * (1.0 - share_of_motion(excess).max(share_of_past(excess)));
-    excess.share() * (slow + quick * (1.0 - quick_of_motion)) * drift.steady_share()
+    let wander = share * (slow + quick * (1.0 - quick_of_motion)) * drift.steady_share();
+    (wander > 0.0).then_some((wander, drift))
 }
 
 /// Returns the fraction of a residual's slow changes that comes with motion of the cable or a change of its load.

@@ -13,7 +13,6 @@ use crate::discover::cable::BELIEVED_RATIO;
 use crate::discover::faults::RecordingFault;
 use crate::discover::figures::curve::curves;
 use crate::discover::report::{CableDiscovery, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
-use crate::discover::rest::drift::Drift;
 use crate::discover::rest::places::Excess;
 use crate::discover::rest::{WORTH, ranges, wander, with_interpolated};
 use crate::fit::{FitError, Parameter, Row, SampleCounts};
@@ -117,8 +116,7 @@ impl Case<'_, '_> {
         let share = excess.share();
         let all = if share <= WORTH { Vec::new() } else { conditions(record) };
         let places = excess.places(&all);
-        let drift = if share <= WORTH { None } else { Drift::of(&excess) };
-        let wander = drift.map_or(0.0, |drift| wander(&excess, &drift, &places));
+        let wander = wander(&excess, &places).map_or(0.0, |(wander, _)| wander);
         let is_noise = share - wander <= WORTH * (1.0 + wander);
         let model = |trial: &Trial, covariance: &DMatrix<f64>| {
             let (columns, fitted): (Vec<usize>, Vec<Parameter>) = trial
