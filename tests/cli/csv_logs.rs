@@ -197,6 +197,39 @@ fn what_is_missing_in_a_table_is_told_in_a_sentence() {
         .fails(1, &["`run.csv` is CSV and `log.mcap` is not"]);
 }
 
+/// Times that are no seconds make speeds, and with them viscous friction, a thousand times too small.
+#[test]
+fn times_in_another_unit_are_told() {
+    let place = Place::with_log();
+    let table = |start: f64, step: f64, rows: u32| -> String {
+        let rows = (0..rows)
+            .map(|row| format!("{},3.{},{}\n", start + step * f64::from(row), row % 7, 2.0 + 1e-3 * f64::from(row)));
+        format!("time_s,cable1.force_n,cable1.length_m\n{}", rows.collect::<String>())
+    };
+    let replayed = |table: String| {
+        place.write("run.csv", table);
+        place.run(&["replay", "run.csv", "--model", "robot.toml"])
+    };
+    let factor = ["if it is in milliseconds, give the column of `time_s` `factor = 0.001`"];
+    replayed(table(0.0, 4.0, 200)).warns(&["the time is at least 4.0000 s from row to row", factor[0]]);
+    assert!(!replayed(table(0.0, 0.004, 200)).stderr.contains("from row to row"));
+    replayed(table(1.78e12, 4.0, 200)).fails(1, &["line 2, column `time_s`: `1780000000000` is no time in seconds"]);
+    // `init` takes what cannot be seconds for milliseconds, and asks where it may be.
+    for (start, factor, note) in
+        [(1.78e12, true, "does not look like seconds"), (0.0, false, "is the time in milliseconds?")]
+    {
+        place.write("run.csv", table(start, 4.0, 200));
+        let run = place.run(&["init", "run.csv", "-o", "draft.toml", "--force"]).succeeds();
+        let draft = String::from_utf8(place.read("draft.toml")).unwrap();
+        assert!(draft.contains(note) && draft.contains("factor = 0.001") == factor, "{run:#?} {draft}");
+        assert!(draft.contains(if factor { "cycle_s = 0.004 " } else { "cycle_s = 4.0 " }), "{draft}");
+    }
+    place.write("run.csv", table(0.0, 4.0, 200).replacen("time_s", "t", 1));
+    place.run(&["init", "run.csv", "-o", "draft.toml", "--force"]).succeeds();
+    let draft = String::from_utf8(place.read("draft.toml")).unwrap();
+    assert!(draft.contains("\"time_s\" = { column = \"t\", factor = 0.001 }"), "{draft}");
+}
+
 #[test]
 fn a_wrong_entry_of_the_columns_names_its_line() {
     let place = Place::with_log();

@@ -31,12 +31,12 @@ fn a_semicolon_is_not_the_end_of_a_cause() {
     let place = Place::with_log();
     place.write("my; notes.txt", "run 1 was good; run 2 was not\n");
     for (log, lines) in [
-        ("no; where.mcap", ["error: there is no file `no; where.mcap`", "  check the path"]),
+        ("no; where.mcap", ["error: there is no file `no; where.mcap`", "  Check the path."]),
         (
             "my; notes.txt",
             [
-                "error: `my; notes.txt` is not an MCAP recording: it is a text file",
-                "  name the file that the recorder wrote (it usually ends in `.mcap`)",
+                "error: `my; notes.txt` is not an MCAP recording, and no CSV table or rosbag2 either: it is a text file without a table",
+                "  Name a recording (`.mcap`), a CSV table with a header and rows of numbers, or the folder of a bag.",
             ],
         ),
     ] {

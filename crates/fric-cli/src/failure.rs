@@ -52,7 +52,7 @@ impl Failure {
         let sentence = error.to_string();
         let cause =
             sentence.strip_suffix(advice).map_or(sentence.as_str(), |cause| cause.trim_end_matches(['.', ';', ' ']));
-        Self::new(with_sources(cause.to_owned(), error)).advise(advice)
+        Self::new(with_sources(cause.to_owned(), error)).advise(as_sentence(advice))
     }
 
     /// Adds what to do.
@@ -119,9 +119,14 @@ impl From<FitError> for Failure {
 fn with_own_advice(error: &dyn Error) -> Failure {
     let sentence = in_full(error);
     let Some((cause, advice)) = sentence.rsplit_once("; ") else { return Failure::new(sentence) };
+    Failure::new(cause).advise(as_sentence(advice))
+}
+
+/// Returns the end of a sentence as a sentence of its own.
+fn as_sentence(advice: &str) -> String {
     let mut letters = advice.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-    Failure::new(cause).advise(format!("{first}{}.", letters.as_str().trim_end_matches('.')))
+    format!("{first}{}.", letters.as_str().trim_end_matches('.'))
 }
 
 impl From<StoreError> for Failure {

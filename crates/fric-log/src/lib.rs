@@ -1,6 +1,7 @@
 //! fric-log
 
 mod bag;
+mod csv_form;
 mod csv_log;
 mod error;
 pub mod log;
@@ -14,5 +15,5 @@ pub mod table;
 mod warnings;
 pub mod write;
 
-pub use csv_log::CsvError;
+pub use csv_log::{CsvError, GREAT_INTERVAL_S};
 pub use error::{in_full, reason, with_sources};

@@ -99,12 +99,18 @@ impl SignalReader {
     pub fn cycle_warning(&self, robot: &RobotFile) -> Option<String> {
         let interval_s = self.counts(Role::Cable).interval_nanos * 1e-9;
         let cycle_s = robot.options().cycle_s;
-        let agree = interval_s <= 0.0 || (0.8..=1.25).contains(&(interval_s / cycle_s));
-        (!agree).then(|| {
+        let ratio = interval_s / cycle_s;
+        let is_near = |of: f64| (0.8..=1.25).contains(&(ratio / of));
+        let thousands = [1e3, 1e6, 1e9].into_iter().any(|times| is_near(times) || is_near(1.0 / times));
+        let consequence = if thousands {
+            "one of the two has another unit than seconds, and with wrong times speeds and viscous friction are wrong too"
+        } else {
+            "delays and the check for a frozen sensor count samples, as many as `cycle_s` makes of them; friction itself does not \
+             depend on the rate"
+        };
+        (interval_s > 0.0 && !is_near(1.0)).then(|| {
             format!(
-                "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; delays and \
-                 the check for a frozen sensor count samples, as many as `cycle_s` makes of them; friction itself does not \
-                 depend on the rate"
+                "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; {consequence}"
             )
         })
     }

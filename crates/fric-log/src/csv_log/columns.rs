@@ -7,7 +7,7 @@ use fric_core::robot::file::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLU
 use fric_core::robot::nearest_name;
 
 use super::CsvError;
-use super::form::Form;
+use crate::csv_form::Form;
 
 /// A column to read.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +22,11 @@ impl Column {
     pub fn value(&self, number: f64) -> f64 {
         let ColumnTable { factor, offset, .. } = self.table;
         number * factor + offset
+    }
+
+    /// Whether its numbers are its values, for no factor is given.
+    pub fn has_plain_values(&self) -> bool {
+        self.table.factor.to_bits() == 1.0_f64.to_bits()
     }
 
     /// Returns the power of ten that converts the times of this column to nanoseconds, if a power of ten suffices.

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::units::TimeUnit;
+
 /// Advice, each the end of a sentence.
 mod advice {
     pub const DISK: &str = "check the disk, or copy the file and try again";
@@ -13,6 +15,8 @@ mod advice {
     pub const NAME: &str = "name the right columns under `[log.columns]` in the robot file, such as \
                             \"cable1.force_n\" = { column = \"Load cell 1 [kg]\", factor = 9.80665 }";
     pub const RENAME: &str = "take one of the two out, or give it another name";
+    pub const TIME: &str =
+        "give the column of `time_s` the `factor` to seconds under `[log.columns]` in the robot file";
     pub const CELL: &str =
         "write digits, without thousands separators, or leave the cell empty where there is no value";
     pub const RECORD: &str = "name a complete copy of it, or record again";
@@ -79,6 +83,20 @@ pub enum CsvError {
         /// Its content.
         text: String,
     },
+    /// A time is too large.
+    #[error("`{}`, line {line}, column `{column}`: `{text}` is no time in seconds; {}", path.display(), time_advice(*unit))]
+    Time {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// Its content.
+        text: String,
+        /// The unit that it looks like.
+        unit: Option<TimeUnit>,
+    },
     /// There are no rows below the header.
     #[error("`{}` has no whole row of numbers below its header; {}", path.display(), advice::RECORD)]
     NoRow {
@@ -104,6 +122,13 @@ pub enum CsvError {
 /// Maximum number of columns named in an error.
 const MOST_LISTED: usize = 10;
 
+const fn time_advice(unit: Option<TimeUnit>) -> &'static str {
+    match unit {
+        Some(unit) => unit.advice(),
+        None => advice::TIME,
+    }
+}
+
 fn listed(columns: &[String]) -> String {
     let names: Vec<String> = columns.iter().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
     let more = columns.len().saturating_sub(MOST_LISTED);
@@ -122,6 +147,7 @@ impl CsvError {
             Self::Missing { .. } => advice::NAME,
             Self::Repeated { .. } => advice::RENAME,
             Self::Cell { .. } => advice::CELL,
+            Self::Time { unit, .. } => time_advice(*unit),
             Self::NoRow { .. } | Self::NoNumber { .. } => advice::RECORD,
             Self::NoUsableRow { .. } => advice::ROWS,
         }

@@ -11,8 +11,6 @@
 
 mod columns;
 mod error;
-mod form;
-mod number;
 mod units;
 
 use std::fs::File;
@@ -22,15 +20,17 @@ use std::path::{Path, PathBuf};
 use csv::{ByteRecord, Reader, ReaderBuilder, Trim};
 
 pub use self::error::CsvError;
+pub use self::units::GREAT_INTERVAL_S;
 
 use self::columns::{Column, Columns, Wanted};
-use self::form::{COMMENT, Form, text_of};
-use self::number::{Decimals, scaled};
-use self::units::{Quantity, Units};
+use self::units::{Quantity, TimeUnit, Units};
+use crate::csv_form::{COMMENT, Decimals, Form, scaled, text_of};
 use crate::signals::{Role, SignalPaths};
 
 /// Number of bytes that contain the header and the first row of a file.
 const BEGINNING_BYTES: u64 = 1 << 18;
+/// Greatest likely time in seconds: the year 2100, counted from 1970.
+const GREATEST_TIME_S: f64 = 4.1e9;
 /// Number of bytes that are searched for the last line end.
 const ENDING_BYTES: u64 = 1 << 20;
 
@@ -268,6 +268,7 @@ impl CsvLog {
                     Some(stamp_nanos) => {
                         self.row.stamp_nanos = stamp_nanos;
                         cells.fill(columns, &mut self.row, &mut self.units)?;
+                        self.units.add_stamp(stamp_nanos, columns.time.has_plain_values());
                         self.row_count += 1;
                         return Ok(true);
                     }
@@ -340,9 +341,18 @@ impl<'a> Cells<'a> {
         if nanos.is_nan() {
             return Ok(None);
         }
+        if nanos.is_infinite() {
+            return Err(self.wrong(column));
+        }
         #[expect(clippy::cast_possible_truncation, reason = "checked to be within 292 years")]
         let stamp_nanos = (nanos.abs() < 9.2e18).then_some(nanos.round() as i64);
-        stamp_nanos.map(Some).ok_or_else(|| self.wrong(column))
+        stamp_nanos.map(Some).ok_or_else(|| CsvError::Time {
+            path: self.path.to_owned(),
+            line: self.line,
+            column: column.table.column.clone(),
+            text: text_of(self.text(column)),
+            unit: TimeUnit::of(nanos * 1e-9, GREATEST_TIME_S).filter(|_| column.has_plain_values()),
+        })
     }
 
     /// Fills in the values of a row. A signal without any known value, or an incomplete pose or wrench, is left empty.
@@ -394,7 +404,7 @@ fn last_line_end(file: &mut File, len: u64) -> io::Result<u64> {
     file.seek(SeekFrom::Start(from))?;
     let mut ending = Vec::new();
     file.take(ENDING_BYTES).read_to_end(&mut ending)?;
-    let end = ending.iter().rposition(|byte| *byte == b'\n').map_or(0, |place| place + 1);
+    let end = ending.iter().rposition(|byte| matches!(byte, b'\n' | b'\r')).map_or(0, |place| place + 1);
     // Blanks after it are not a line.
     let is_blank = ending.get(end..).unwrap_or_default().iter().all(u8::is_ascii_whitespace);
     Ok(if is_blank { len } else { from + end as u64 })

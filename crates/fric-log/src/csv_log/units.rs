@@ -18,7 +18,55 @@ struct Sizes {
 
 /// The magnitudes of all values so far.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Units([Sizes; 3]);
+pub(super) struct Units {
+    sizes: [Sizes; 3],
+    last_stamp_nanos: Option<i64>,
+    /// The shortest time from one row to the next.
+    least_interval_nanos: Option<u64>,
+    time_has_factor: bool,
+}
+
+/// Interval of the samples above which their times are probably not in seconds: no winch is recorded at less than 5 Hz, and in milliseconds this is
+/// 5 kHz.
+pub const GREAT_INTERVAL_S: f64 = 0.2;
+
+/// Advice for times whose factor is given already.
+const FACTOR_ADVICE: &str =
+    "if that is wrong, correct the `factor` of `time_s` under `[log.columns]` in the robot file";
+
+/// A unit of time smaller than a second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TimeUnit {
+    /// 1e-3 s.
+    Millisecond,
+    /// 1e-6 s.
+    Microsecond,
+    /// 1e-9 s.
+    Nanosecond,
+}
+
+impl TimeUnit {
+    /// Returns the largest unit in which a time that was taken for seconds is below `most_s`; `None` if there is none.
+    pub(super) fn of(taken_s: f64, most_s: f64) -> Option<Self> {
+        let units = [(Self::Millisecond, 1e-3), (Self::Microsecond, 1e-6), (Self::Nanosecond, 1e-9)];
+        units.into_iter().find(|(_, factor)| taken_s.abs() * factor < most_s).map(|(unit, _)| unit)
+    }
+
+    /// Returns how to state it, the end of a sentence.
+    pub(super) const fn advice(self) -> &'static str {
+        match self {
+            Self::Millisecond => {
+                "if it is in milliseconds, give the column of `time_s` `factor = 0.001` under `[log.columns]` in the robot file"
+            }
+            Self::Microsecond => {
+                "if it is in microseconds, give the column of `time_s` `factor = 1e-6` under `[log.columns]` in the robot file"
+            }
+            Self::Nanosecond => {
+                "if it is in nanoseconds, give the column of `time_s` `factor = 1e-9` under `[log.columns]` in the robot file"
+            }
+        }
+    }
+}
 
 /// Mean force above which the unit is probably grams or millinewtons, N: the largest cable robots with sensors have lower forces.
 const GREAT_FORCE_N: f64 = 2000.0;
@@ -33,16 +81,28 @@ impl Units {
     /// Adds a converted value.
     pub fn add(&mut self, quantity: Quantity, value: f64) {
         if value.is_finite() {
-            let Sizes { count, sum, greatest } = &mut self.0[quantity as usize];
+            let Sizes { count, sum, greatest } = &mut self.sizes[quantity as usize];
             *count += 1;
             *sum += value.abs();
             *greatest = greatest.max(value.abs());
         }
     }
 
+    /// Adds the time of a row; `is_plain` if the file has it in seconds.
+    pub fn add_stamp(&mut self, stamp_nanos: i64, is_plain: bool) {
+        self.time_has_factor |= !is_plain;
+        if let Some(last_nanos) = self.last_stamp_nanos.replace(stamp_nanos)
+            && last_nanos != stamp_nanos
+        {
+            let interval_nanos = stamp_nanos.abs_diff(last_nanos);
+            self.least_interval_nanos =
+                Some(self.least_interval_nanos.map_or(interval_nanos, |least| least.min(interval_nanos)));
+        }
+    }
+
     /// Returns warnings about quantities that seem to have another unit, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
-        let [force, length, speed] = self.0;
+        let [force, length, speed] = self.sizes;
         #[expect(clippy::cast_precision_loss, reason = "a mean for people")]
         let mean = |sizes: Sizes| sizes.sum / sizes.count as f64;
         let warning = |what: &str, value: f64, unit: &str, other: &str, factor: &str| {
@@ -52,6 +112,14 @@ impl Units {
             )
         };
         let mut warnings = Vec::new();
+        #[expect(clippy::cast_precision_loss, reason = "a duration for people")]
+        let interval_s = self.least_interval_nanos.map_or(0.0, |nanos| nanos as f64 * 1e-9);
+        if interval_s > GREAT_INTERVAL_S
+            && let Some(unit) = TimeUnit::of(interval_s, GREAT_INTERVAL_S)
+        {
+            let advice = if self.time_has_factor { FACTOR_ADVICE } else { unit.advice() };
+            warnings.push(format!("the time is at least {interval_s:.4} s from row to row; {advice}"));
+        }
         if force.count > 0 && mean(force) > GREAT_FORCE_N {
             warnings.push(warning(
                 "forces are on average",

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 mod advice {
     pub const NAME: &str = "give at least one MCAP file";
     pub const PATH: &str = "check the path";
-    pub const DIRECTORY: &str = "name the MCAP file (or files) in it";
+    pub const DIRECTORY: &str = "name the log in it";
     pub const PIPE: &str = "save the recording to a file first";
     pub const PERMISSIONS: &str = "check its permissions";
     pub const EMPTY: &str = "copy the recording again, or name another one";
@@ -36,7 +36,7 @@ pub enum RecordingError {
         path: PathBuf,
     },
     /// The path is a directory.
-    #[error("`{}` is a directory; {}", path.display(), advice::DIRECTORY)]
+    #[error("`{}` is a directory without a recording (`.mcap`, `.db3`); {}", path.display(), advice::DIRECTORY)]
     Directory {
         /// The path as given.
         path: PathBuf,
@@ -68,7 +68,7 @@ pub enum RecordingError {
         path: PathBuf,
     },
     /// Nothing in the file looks like MCAP.
-    #[error("`{}` is not an MCAP recording: {found}; {advice}", path.display())]
+    #[error("`{}` is not an MCAP recording, and no CSV table or rosbag2 either: {found}; {advice}", path.display())]
     NotMcap {
         /// The path as given.
         path: PathBuf,

@@ -130,7 +130,8 @@ pub(crate) fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
 
 /// Returns what a file that is not MCAP may be, and what to do about it.
 fn looks_like(mut file: &File) -> io::Result<(&'static str, &'static str)> {
-    const RIGHT_FILE: &str = "name the file that the recorder wrote (it usually ends in `.mcap`)";
+    const RIGHT_FILE: &str =
+        "name a recording (`.mcap`), a CSV table with a header and rows of numbers, or the folder of a bag";
     let mut start = Vec::new();
     file.by_ref().take(256).read_to_end(&mut start)?;
     Ok(if start.starts_with(b"SQLite format 3\0") {
@@ -141,8 +142,14 @@ fn looks_like(mut file: &File) -> io::Result<(&'static str, &'static str)> {
         ("it is compressed as a whole with zstd", "decompress it with `unzstd`")
     } else if start.starts_with(&[0x1f, 0x8b]) {
         ("it is compressed as a whole with gzip", "decompress it with `gunzip`")
+    } else if start.starts_with(b"PK\x03\x04") {
+        ("it is a spreadsheet or another zip archive", "save the sheet as CSV, or unpack it")
+    } else if start.starts_with(b"\x89HDF") || start.starts_with(b"MATLAB 5.0") {
+        ("it is an HDF5 or MATLAB file", "write its signals as CSV")
+    } else if start.starts_with(b"PAR1") {
+        ("it is a Parquet file", "write it as CSV")
     } else if std::str::from_utf8(&start).is_ok_and(|text| !text.contains('\0')) {
-        ("it is a text file", RIGHT_FILE)
+        ("it is a text file without a table", RIGHT_FILE)
     } else {
         ("no MCAP record was found in it", RIGHT_FILE)
     })

@@ -17,6 +17,8 @@ mod advice {
         "Name the right topic, or the path to the forces, as `cable` under `[log]` in the robot file";
     pub const LENGTH: &str = "name the topic or path of the lengths as `length` under `[log]` in the robot file";
     pub const PART: &str = "choose a part that it has";
+    pub const NAMES: &str = "compare cables and topics in the robot file with what `fric-cli info` shows of the log";
+    pub const OTHER: &str = "name another recording";
     pub const BEGINNING: &str = "use a complete copy of the recording";
 }
 
@@ -59,7 +61,10 @@ pub enum SignalError {
         source: SchemaError,
     },
     /// No message on the cable topic is usable.
-    #[error("no message on `{topic}`, the topic of the cable signals, can be used; the first: {reason}")]
+    #[error(
+        "no message on `{topic}`, the topic of the cable signals, can be used; the first: {reason}; {}",
+        advice::NAMES
+    )]
     NoUsableMessage {
         /// The topic.
         topic: String,
@@ -89,10 +94,10 @@ impl SignalError {
         match self {
             Self::Recording(error) => error.advice(),
             Self::Csv(error) => Some(error.advice()),
-            Self::NoCableTopic { topics, .. } => (!topics.is_empty()).then_some(advice::TOPIC),
+            Self::NoCableTopic { topics, .. } => Some(if topics.is_empty() { advice::OTHER } else { advice::TOPIC }),
             Self::NoBeginning { .. } => Some(advice::BEGINNING),
             Self::CableFields { .. } => Some(advice::TOPIC_OR_PATH),
-            Self::NoUsableMessage { .. } => None,
+            Self::NoUsableMessage { .. } => Some(advice::NAMES),
             Self::NothingInPart { .. } => Some(advice::PART),
             Self::NoLength { .. } => Some(advice::LENGTH),
         }
@@ -115,7 +120,7 @@ impl fmt::Display for Between<'_> {
 
 fn available(topics: &[String]) -> String {
     if topics.is_empty() {
-        return "it has no other topics either".to_owned();
+        return format!("it has no other topics either; {}", advice::OTHER);
     }
     format!("it has {}. {}", topics.join(", "), advice::TOPIC)
 }

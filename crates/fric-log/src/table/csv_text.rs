@@ -1,4 +1,4 @@
-//! Tables as text, RFC 4180, with a header.
+//! Tables as text with a header, in any [`Form`].
 
 use std::fs;
 use std::path::Path;
@@ -6,22 +6,46 @@ use std::path::Path;
 use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 
 use super::{NumberTable, TableError};
+use crate::csv_form::{COMMENT, Decimals, Form};
+
+/// Number of bytes that contain the header and the first row.
+const BEGINNING_BYTES: usize = 1 << 18;
 
 /// Reads all columns. Blanks around cells and a byte order mark are ignored.
 ///
 /// A last row without a line end is left out, with a warning, even if it has all its cells, because its last number may be incomplete.
 pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
-    let refused = |error: csv::Error| refusal(path, error);
     let text = fs::read(path).map_err(|source| TableError::File { path: path.to_owned(), source })?;
+    // UTF-16, or no text at all.
+    if text.contains(&0) {
+        return Err(TableError::NotText { path: path.to_owned(), line: 1 });
+    }
     let (whole, is_cut) = whole_lines(&text);
-    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(whole);
-    let names = header(path, reader.headers().map_err(refused)?)?;
-    let mut columns: Vec<(String, Vec<f64>)> = names.into_iter().map(|name| (name, Vec::new())).collect();
-    let mut row = StringRecord::new();
-    while reader.read_record(&mut row).map_err(refused)? {
-        let line = row.position().map_or(0, csv::Position::line);
+    let Some(form) = Form::find(whole.get(..BEGINNING_BYTES).unwrap_or(whole)) else {
+        return Err(TableError::Empty { path: path.to_owned() });
+    };
+    if form.lacks_header {
+        return Err(TableError::NoHeader { path: path.to_owned(), line: form.first_line });
+    }
+    let rows = usize::try_from(form.rows_at).ok().and_then(|at| whole.get(at..)).unwrap_or_default();
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .delimiter(form.separator)
+        .comment(Some(COMMENT))
+        .trim(Trim::All)
+        .from_reader(rows);
+    let line_of = |position: Option<&csv::Position>| form.first_line - 1 + position.map_or(1, csv::Position::line);
+    let mut columns = empty_columns(path, &form.names)?;
+    let (mut decimals, mut row) = (Decimals::default(), StringRecord::new());
+    while reader.read_record(&mut row).map_err(|error| refusal(path, line_of(error.position()), error))? {
+        let line = line_of(row.position());
+        if row.len() != columns.len() {
+            let (found, expected) = (row.len() as u64, columns.len() as u64);
+            return Err(TableError::Length { path: path.to_owned(), line, found, expected });
+        }
         for ((name, numbers), text) in columns.iter_mut().zip(&row) {
-            numbers.push(number(text).ok_or_else(|| TableError::Cell {
+            numbers.push(decimals.number(text).ok_or_else(|| TableError::Cell {
                 path: path.to_owned(),
                 line,
                 column: name.clone(),
@@ -50,33 +74,20 @@ fn whole_lines(text: &[u8]) -> (&[u8], bool) {
     }
 }
 
-fn header(path: &Path, row: &StringRecord) -> Result<Vec<String>, TableError> {
-    let names: Vec<String> = row.iter().map(|name| name.trim_start_matches('\u{feff}').trim().to_owned()).collect();
-    if let [only] = names.as_slice()
-        && let Some(separator) = [';', '\t'].into_iter().find(|separator| only.contains(*separator))
-    {
-        return Err(TableError::Separator { path: path.to_owned(), separator });
-    }
+/// Returns a column without numbers for each name.
+fn empty_columns(path: &Path, names: &[String]) -> Result<Vec<(String, Vec<f64>)>, TableError> {
     let is_repeated = |(place, name): (usize, &String)| names.iter().take(place).any(|other| other == name);
     match names.iter().enumerate().find(|entry| is_repeated(*entry)) {
         Some((_, column)) => Err(TableError::Repeated { path: path.to_owned(), column: column.clone() }),
-        None => Ok(names),
+        None => Ok(names.iter().map(|name| (name.clone(), Vec::new())).collect()),
     }
 }
 
-fn number(text: &str) -> Option<f64> {
-    if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() }
-}
-
-fn refusal(path: &Path, error: csv::Error) -> TableError {
+fn refusal(path: &Path, line: u64, error: csv::Error) -> TableError {
     let path = path.to_owned();
-    let line = error.position().map_or(1, csv::Position::line);
     match error.into_kind() {
         ErrorKind::Io(source) => TableError::File { path, source },
-        ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            TableError::Length { path, line, found: len, expected: expected_len }
-        }
-        // The text is not UTF-8; nothing is deserialised or sought.
+        // The text is not UTF-8; nothing is deserialised or sought, and rows may be of any length.
         _ => TableError::NotText { path, line },
     }
 }

@@ -43,13 +43,16 @@ pub enum TableError {
         /// The line, from 1.
         line: u64,
     },
-    /// The file is CSV with a separator other than a comma.
-    #[error("{}: the header holds `{separator}` and no comma; put commas between the columns", path.display())]
-    Separator {
+    /// The file begins with numbers instead of a header.
+    #[error(
+        "{}, line {line}: there are numbers where the names of the columns should be; put a line with the names in front",
+        path.display()
+    )]
+    NoHeader {
         /// The file.
         path: PathBuf,
-        /// The separator found.
-        separator: char,
+        /// The line, from 1.
+        line: u64,
     },
     /// A column occurs twice.
     #[error("{}: column `{column}` stands there twice; take one of the two out", path.display())]
@@ -73,8 +76,8 @@ pub enum TableError {
     },
     /// A cell is not a number.
     #[error(
-        "{}, line {line}, column `{column}`: `{text}` is no number; write digits with a point, or leave the cell empty \
-         where there is no value", path.display()
+        "{}, line {line}, column `{column}`: `{text}` is no number; write digits, without thousands separators, or leave \
+         the cell empty where there is no value", path.display()
     )]
     Cell {
         /// The file.

@@ -57,6 +57,8 @@ fn text_is_read_as_it_stands() {
     let [(first, times), (second, numbers)] = &table.columns[..] else { panic!("{table:?}") };
     assert_eq!((first.as_str(), second.as_str(), &times[..]), ("time_s", "b", &[0.1, 0.2, 0.3][..]));
     assert!((numbers[0] - 1e-3).abs() < 1e-18 && numbers[1].is_nan() && numbers[2].is_nan());
+    let with_commas = place.csv("# measured on a bench\nsep=;\ntime_s;b\n0,1;1e-3\n0,2;\n0,3;nan\n").unwrap();
+    assert_eq!(format!("{with_commas:?}"), format!("{table:?}"));
 }
 
 #[test]
@@ -68,7 +70,10 @@ fn text_that_is_no_table_is_told() {
     };
     assert_eq!(said(""), " has no row of numbers below its header; record again");
     assert_eq!(said("a,b\n"), " has no row of numbers below its header; record again");
-    assert_eq!(said("a;b\n1;2\n"), ": the header holds `;` and no comma; put commas between the columns");
+    let no_header =
+        ", line 1: there are numbers where the names of the columns should be; put a line with the names in front";
+    assert_eq!(said("1,2\n3,4\n"), no_header);
+    assert!(said("a;b\n1,5;2\n1.5;2\n").starts_with(", line 3, column `a`: `1.5` is no number; "));
     assert_eq!(said("a,b,a\n1,2,3\n"), ": column `a` stands there twice; take one of the two out");
     assert_eq!(said("a,b\n1,2\n1,2,3\n"), ", line 3: 3 cells under a header of 2; complete the row or take it out");
     assert!(said("a,b\n1,2\n1,two\n").starts_with(", line 3, column `b`: `two` is no number; "));

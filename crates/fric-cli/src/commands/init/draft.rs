@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use fric_core::robot::file::TIME_COLUMN;
 use fric_core::text_file::name_problem;
 use fric_lab::text::wrapped;
 
@@ -15,7 +16,7 @@ pub struct ColumnGuess {
 }
 
 /// The known content so far.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Draft {
     name: String,
     interval_s: Option<f64>,
@@ -42,6 +43,24 @@ impl Draft {
             has_pose: false,
             notes: Vec::new(),
         }
+    }
+
+    /// Whether the name of the column of the time has its unit.
+    pub fn time_states_its_unit(&self) -> bool {
+        let column = self.columns.iter().find(|guess| guess.key == TIME_COLUMN).map(|guess| guess.column.as_str());
+        column.is_none_or(|name| name.contains(['[', '(']) || name.ends_with("_s") || name.ends_with("_sec"))
+    }
+
+    /// Returns the draft with a factor for the column of the time.
+    pub fn with_time_factor(&self, factor: f64) -> Self {
+        let mut draft = self.clone();
+        let column = draft.columns.iter().position(|guess| guess.key == TIME_COLUMN);
+        let column = column.map_or_else(|| TIME_COLUMN.to_owned(), |place| draft.columns.remove(place).column);
+        draft.notes.push(format!(
+            "{TIME_COLUMN}: column {column:?} does not look like seconds; a factor of {factor:?} is taken"
+        ));
+        draft.columns.insert(0, ColumnGuess { key: TIME_COLUMN.to_owned(), column, factor });
+        draft
     }
 
     pub fn set_interval_s(&mut self, interval_s: Option<f64>) {
@@ -90,11 +109,7 @@ impl Draft {
         if !columns.is_empty() {
             text += "[log.columns]\n";
             for ColumnGuess { key, column, factor } in columns {
-                let factor = if factor.to_bits() == 1.0_f64.to_bits() {
-                    String::new()
-                } else {
-                    format!(", factor = {factor:?}")
-                };
+                let factor = if is_one(*factor) { String::new() } else { format!(", factor = {factor:?}") };
                 let _ = writeln!(text, "{key:?} = {{ column = {column:?}{factor} }}");
             }
             text += "\n";
@@ -110,6 +125,10 @@ impl Draft {
         }
         text
     }
+}
+
+fn is_one(factor: f64) -> bool {
+    factor.to_bits() == 1.0_f64.to_bits()
 }
 
 /// Rounds to three digits, as cycle times usually are.

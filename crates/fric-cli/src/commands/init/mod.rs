@@ -4,7 +4,10 @@ mod columns;
 mod draft;
 mod topics;
 
+use std::path::{Path, PathBuf};
+
 use fric_core::robot::file::RobotFile;
+use fric_log::GREAT_INTERVAL_S;
 use fric_log::log::Log;
 use fric_log::output::OutputFile;
 use fric_log::signals::{Role, SignalPaths, SignalReader};
@@ -28,17 +31,14 @@ pub fn run(arguments: &InitArguments) -> Outcome {
         Some(names) => columns::guess(names, &mut draft),
         None => topics::guess(&mut log, &mut draft)?,
     }
-    // The cycle time follows from the samples as the draft finds them.
-    let robot = parsed(&draft.text())?;
-    let interval_s = interval_s(Log::open(logs)?, &robot);
-    draft.set_interval_s(interval_s);
+    find_interval(logs, &mut draft, log.column_names().is_some())?;
     let text = draft.text();
     parsed(&text)?;
     let written = Written::new(file.complete_with(&text)?, "a robot file to start from");
     output::show_with(&draft.summary(), vec![written], &next_step(logs, output))
 }
 
-fn next_step(logs: &[std::path::PathBuf], output: &std::path::Path) -> String {
+fn next_step(logs: &[PathBuf], output: &Path) -> String {
     let log = logs.first().map_or_else(String::new, |log| log.display().to_string());
     let output = output.display();
     format!("Next: check what is marked with `?` in {output}, then\n  fric-cli info {log} --model {output}\n")
@@ -48,6 +48,30 @@ fn parsed(text: &str) -> Outcome<RobotFile> {
     RobotFile::parse(text, "the robot file made of this log").map_err(|error| {
         Failure::new(error).advise("Write the robot file by hand; docs/robot-file.md shows the format.")
     })
+}
+
+/// Finds the interval of the samples. Times of a CSV log that cannot be seconds get the factor of a smaller unit; of slow ones whose column states
+/// seconds only a note tells.
+fn find_interval(logs: &[PathBuf], draft: &mut Draft, has_columns: bool) -> Outcome {
+    let is_usual = |interval_s: &f64| *interval_s < GREAT_INTERVAL_S;
+    let interval_of = |draft: &Draft| Outcome::Ok(interval_s(Log::open(logs)?, &parsed(&draft.text())?));
+    let mut interval_s = interval_of(draft)?;
+    let is_slow = interval_s.is_some_and(|interval_s| !is_usual(&interval_s));
+    if is_slow && draft.time_states_its_unit() {
+        draft
+            .notes
+            .push("time_s: the samples are slow for a recording of forces; is the time in milliseconds?".to_owned());
+    } else if has_columns && (is_slow || interval_s.is_none()) {
+        for factor in [1e-3, 1e-6, 1e-9] {
+            let scaled = draft.with_time_factor(factor);
+            if let Some(interval) = interval_of(&scaled)?.filter(is_usual) {
+                (*draft, interval_s) = (scaled, Some(interval));
+                break;
+            }
+        }
+    }
+    draft.set_interval_s(interval_s);
+    Ok(())
 }
 
 /// Returns the usual interval of the samples; `None` if there are none.

@@ -2,7 +2,7 @@
 
 /// The decimal separator of a file, which is either a point or a comma throughout.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Decimals {
+pub struct Decimals {
     has_points: bool,
     has_commas: bool,
 }
@@ -28,7 +28,7 @@ impl Decimals {
 }
 
 /// Returns a decimal number times `10^exponent`, exactly, rounded to an integer; `None` if it is not written in plain digits.
-pub(super) fn scaled(cell: &str, exponent: u32) -> Option<i64> {
+pub fn scaled(cell: &str, exponent: u32) -> Option<i64> {
     let (is_negative, digits) = match cell.strip_prefix('-') {
         Some(digits) => (true, digits),
         None => (false, cell.strip_prefix('+').unwrap_or(cell)),

@@ -7,12 +7,12 @@ use super::number::Decimals;
 /// Possible separators.
 const SEPARATORS: [u8; 3] = *b",;\t";
 /// Marks a line that is not part of the table.
-pub(super) const COMMENT: u8 = b'#';
+pub const COMMENT: u8 = b'#';
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The form of a CSV file.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Form {
+pub struct Form {
     pub separator: u8,
     /// Column names, in the order of the file.
     pub names: Vec<String>,
@@ -40,9 +40,11 @@ impl Form {
         let table = beginning.strip_prefix(BYTE_ORDER_MARK).unwrap_or(beginning);
         let mut at = beginning.len() - table.len();
         let mut lines = Vec::new();
-        for (number, text) in (1..).zip(table.split_inclusive(|byte| *byte == b'\n')) {
+        for number in 1.. {
+            let next = next_line(beginning, at);
+            let Some(text) = beginning.get(at..next).filter(|text| !text.is_empty()) else { break };
             lines.push(Line { text: text.trim_ascii(), at, number });
-            at += text.len();
+            at = next;
         }
         let mut separators = SEPARATORS.to_vec();
         let mut comment = None;
@@ -82,10 +84,11 @@ impl Form {
     }
 }
 
-/// Returns the position of the next line.
+/// Returns the position of the next line; lines end with `\n`, `\r\n` or `\r`.
 fn next_line(bytes: &[u8], at: usize) -> usize {
     let rest = bytes.get(at..).unwrap_or_default();
-    rest.iter().position(|byte| *byte == b'\n').map_or(bytes.len(), |end| at + end + 1)
+    let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+    end.map_or(bytes.len(), |end| at + end + if rest.get(end..end + 2) == Some(b"\r\n") { 2 } else { 1 })
 }
 
 /// Returns the cells of a line, unquoted and trimmed.
@@ -109,7 +112,7 @@ fn number_count(cells: &[String]) -> usize {
 }
 
 /// Decodes bytes as UTF-8, else as Latin-1, which spreadsheets use for headers.
-pub(super) fn text_of(bytes: &[u8]) -> String {
+pub fn text_of(bytes: &[u8]) -> String {
     std::str::from_utf8(bytes).map_or_else(|_| bytes.iter().copied().map(char::from).collect(), ToOwned::to_owned)
 }
 
@@ -135,5 +138,6 @@ mod tests {
         assert!(form("t,a\n1,2\n").has_fitting_row && !form("run one, good\nrun two\n").has_fitting_row);
         assert_eq!(Form::find(b"# nothing\n\n"), None);
         assert_eq!(form("t,a\n").rows_at, 4);
+        assert_eq!(named("t,a\r1,2\r3,4\r"), expected(',', "t|a", "1,2\r3,4\r", 2));
     }
 }

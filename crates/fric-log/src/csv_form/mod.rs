@@ -1,0 +1,7 @@
+//! The form of CSV text: separator, header, comments and decimals as people and programs write them.
+
+mod form;
+mod number;
+
+pub use form::{COMMENT, Form, text_of};
+pub use number::{Decimals, scaled};
