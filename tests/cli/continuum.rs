@@ -433,6 +433,15 @@ fn a_wrong_unit_is_told() {
         let words = ["bad.csv: by `shift_1_nm`", "times `tension_base_n`", "`load_g` was in N"];
         place.run_in_vain(&command).fails(1, &words).advises(&["calibrate again"]);
     }
+    // kg for N at the base, and mm for m.
+    place.write("bad.csv", scaled(&run, "tension_base_n", 1.0 / 9.80665));
+    for command in of_run {
+        place.run_in_vain(command).fails(1, &["times `tension_base_n`: `tension_base_n` is likely in kg"]);
+    }
+    place.write("bad.csv", scaled(&run, "marker", 1e3));
+    for command in of_run {
+        place.run_in_vain(command).fails(1, &["bad.csv: the markers are", "likely in mm"]).advises(&["in m"]);
+    }
     // Some spikes of the demodulator are no unit.
     let spikes =
         changed(&run, |name, row, cell| if name == "shift_3_nm" && row % 9 == 0 { "1500" } else { cell }.to_owned());
@@ -462,7 +471,7 @@ fn bad_runs_get_their_sentence() {
     refused(without(&good, "shift_2_"), &["`shift_2_nm` is missing beside"], "Add it");
     refused(without(&good, "time_s"), &["`time_s` is missing"], "Add it");
     refused(good.lines().next().unwrap().to_owned() + "\n", &["no row of numbers"], "Record again");
-    refused("1;2\n".to_owned(), &["holds `;`"], "Put commas");
+    refused("1;2\n".to_owned(), &["line 1: there are numbers"], "Put a line with the names in front");
 
     // A backbone so limp that the bend leaves the model.
     place.write("limp.toml", text("cal.toml").replace("youngs_modulus_pa = 200e9", "youngs_modulus_pa = 2e9"));

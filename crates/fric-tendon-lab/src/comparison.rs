@@ -1,6 +1,6 @@
 //! Computes a run by all friction models whose inputs it contains.
 
-use fric_tendon::{ManipulatorParams, ShapeStatus, Tendon};
+use fric_tendon::{ManipulatorParams, ShapeStatus};
 
 use super::base_noise::{BaseNoise, steadied};
 use super::begin::Begin;
@@ -47,7 +47,7 @@ pub fn compare(
         };
         return Err(ContinuumError::MissingGroup { what: "tension", consequence: "no shape follows from it", remedy });
     }
-    run.check_capacity(params.capacity_n(Tendon::Agonist))?;
+    run.check_sizes(params)?;
     let samples = run.samples();
     let all: Vec<WayShapes> = ways
         .into_iter()

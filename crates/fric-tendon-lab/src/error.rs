@@ -1,5 +1,6 @@
 //! Errors in the data of a manipulator.
 
+use fric_lab::text::significant;
 use fric_tendon::{ManipulatorError, ShapeStatus};
 use thiserror::Error;
 
@@ -76,7 +77,9 @@ pub enum ContinuumError {
         value: f64,
     },
     /// An angle exceeds half a turn.
-    #[error("`{column}` is {value} in row {row}; angles to the normal force are in rad, within ±π")]
+    #[error(
+        "`{column}` is {value} in row {row}; angles to the normal force are within ±π: it is likely in degrees, state it in rad"
+    )]
     NoAngle {
         /// Its column.
         column: String,
@@ -227,6 +230,17 @@ pub enum ContinuumError {
         /// Corresponding strain of a silica fibre at common wavelengths, %.
         strain_percent: f64,
     },
+    /// Markers that are much farther away than the arm is long.
+    #[error(
+        "the markers are {distance_m:.3} m from the origin of their frame, and the arm is {length_m} m long: they are likely in mm; state \
+         `marker_1_x_m` and so on in m"
+    )]
+    MarkerUnit {
+        /// Median distance, m.
+        distance_m: f64,
+        /// Length of the backbone, m.
+        length_m: f64,
+    },
     /// A calibration load exceeds the tendon's capacity.
     #[error(
         "`load_n` goes up to {greatest_n} N, above the tendon's capacity of {capacity_n} N: it is likely in g; name the column \
@@ -240,9 +254,9 @@ pub enum ContinuumError {
     },
     /// The tensions of the gratings differ from the tension at the base by orders of magnitude.
     #[error(
-        "by `shift_1_nm` and so on the tension is {ratio:.2e} times `tension_base_n`: {}; state shifts in nm and forces in N, and \
-         calibrate again",
-        unit_by(*ratio)
+        "by `shift_1_nm` and so on the tension is {} times `tension_base_n`: {}; state shifts in nm and forces in N, and calibrate \
+         again",
+        significant(*ratio), unit_by(*ratio)
     )]
     GratingUnit {
         /// Ratio of the gratings' tension to the tension at the base.
@@ -299,7 +313,9 @@ pub enum ContinuumError {
 fn unit_by(ratio: f64) -> &'static str {
     match ratio {
         300.0..3000.0 => "they are likely in pm",
+        6.0..30.0 => "`tension_base_n` is likely in kg",
         30.0..300.0 => "the loads that they were calibrated with were likely in g under the name `load_n`",
+        0.03..0.2 => "the loads that they were calibrated with were likely in kg under the name `load_n`",
         0.003..0.03 => "`tension_base_n` is likely in g, or the calibration's `load_g` was in N",
         0.0003..0.003 => "they were likely calibrated in pm",
         _ => "one of them is in another unit",

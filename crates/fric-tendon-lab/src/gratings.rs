@@ -26,8 +26,9 @@ const FAR_ERRORS: f64 = 8.0;
 /// spaced loads, `√(h/(1 + h))` with the leverage `h = 1/10 + 4.5²/82.5`.
 const USUAL_LINE_RATIO: f64 = 0.5;
 
-/// Range of the ratio of the gratings' tension to the tension at the base that friction, a load and a rough calibration can explain.
-const PLAUSIBLE_SCALE: Range<f64> = 1.0 / 30.0..30.0;
+/// Range of the ratio of the gratings' tension to the tension at the base that friction, a load and a rough calibration can explain; the smallest
+/// ratio of two units is 9.8.
+const PLAUSIBLE_SCALE: Range<f64> = 0.2..6.0;
 /// Fraction of the greatest tension above which the ratio of two tensions is meaningful.
 const LOADED_RATIO: f64 = 0.2;
 

@@ -1,5 +1,7 @@
 //! A run of a manipulator: the measurements, sample by sample.
 
+use fric_tendon::{ManipulatorParams, Tendon};
+
 use super::columns::{self, Columns};
 use super::error::ContinuumError;
 
@@ -28,6 +30,10 @@ impl Default for RunSample {
         Self { time_s: 0.0, tension_base_n: nan, shift_nm: Vec::new(), shift_reference_nm: nan, marker_m: Vec::new() }
     }
 }
+
+/// Ratio of the markers' distance to the arm's length above which they are in millimetres, which makes some 500 of the half of the arm. A camera may
+/// stand apart from a small arm; at half and at twice this ratio the same runs are refused.
+const FAR_RATIO: f64 = 100.0;
 
 /// A checked run: time increases, tensions are finite and not negative, and every group of columns is complete or absent.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,20 +172,31 @@ impl Run {
         self.samples.iter().any(|sample| !sample.marker_m.is_empty())
     }
 
-    /// Checks that no tension at the base exceeds a capacity.
+    /// Checks that tensions and markers are of the manipulator's size.
     ///
     /// # Errors
-    /// Returns [`ContinuumError::OverCapacity`] with the first one that does.
-    pub fn check_capacity(&self, capacity_n: f64) -> Result<(), ContinuumError> {
+    /// Returns [`ContinuumError::OverCapacity`] with the first tension at the base that exceeds the tendon's capacity, or
+    /// [`ContinuumError::MarkerUnit`] for markers much farther away than the arm is long.
+    pub fn check_sizes(&self, params: &ManipulatorParams) -> Result<(), ContinuumError> {
+        let capacity_n = params.capacity_n(Tendon::Agonist);
         let over = self.samples.iter().position(|sample| sample.tension_base_n > capacity_n);
-        match over.and_then(|place| Some((place, self.samples.get(place)?))) {
-            Some((place, RunSample { time_s, tension_base_n, .. })) => Err(ContinuumError::OverCapacity {
+        if let Some((place, sample)) = over.and_then(|place| Some((place, self.samples.get(place)?))) {
+            return Err(ContinuumError::OverCapacity {
                 row: place + 1,
-                time_s: *time_s,
-                tension_n: *tension_base_n,
+                time_s: sample.time_s,
+                tension_n: sample.tension_base_n,
                 capacity_n,
-            }),
-            None => Ok(()),
+            });
+        }
+        let distances_m = self.samples.iter().flat_map(|sample| &sample.marker_m).map(|[x_m, y_m]| x_m.hypot(*y_m));
+        let mut sorted_m: Vec<f64> = distances_m.filter(|distance_m| distance_m.is_finite()).collect();
+        sorted_m.sort_by(f64::total_cmp);
+        let length_m = params.length_m();
+        match sorted_m.get(sorted_m.len() / 2) {
+            Some(&middle_m) if middle_m > FAR_RATIO * length_m => {
+                Err(ContinuumError::MarkerUnit { distance_m: middle_m, length_m })
+            }
+            _ => Ok(()),
         }
     }
 }

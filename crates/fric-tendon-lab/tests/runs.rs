@@ -1,7 +1,7 @@
 //! Runs as columns: what is refused, and gratings that have died.
 
 use fric_tendon::file::ManipulatorFile;
-use fric_tendon::{ManipulatorOptions, ManipulatorParams};
+use fric_tendon::{ManipulatorOptions, ManipulatorParams, TendonOptions};
 use fric_tendon_lab::comparison::compare;
 use fric_tendon_lab::fbg::Calibration;
 use fric_tendon_lab::gratings::Gratings;
@@ -102,8 +102,15 @@ fn bad_runs_get_their_sentence() {
     assert!(said(&short).starts_with("column `shift_3_nm` has 19 values, the first column 20; "));
 
     let run = Run::from_columns(&good, 8).unwrap();
-    let over = run.check_capacity(0.1).unwrap_err().to_string();
+    let weak = TendonOptions { capacity_n: 0.1, ..TendonOptions::published() };
+    let weak = ManipulatorOptions { tendons: [weak; 2], ..ManipulatorOptions::published() };
+    let over = run.check_sizes(&ManipulatorParams::new(&weak).unwrap()).unwrap_err().to_string();
     assert!(over.contains("above the tendon's capacity of 0.1 N"), "{over}");
+    let mut in_mm = good.clone();
+    let markers = in_mm.iter_mut().filter(|(name, _)| name.starts_with("marker_"));
+    markers.flat_map(|(_, numbers)| numbers).for_each(|number| *number *= 1e3);
+    let in_mm = Run::from_columns(&in_mm, 8).unwrap().check_sizes(&published()).unwrap_err().to_string();
+    assert!(in_mm.contains("likely in mm; state `marker_1_x_m` and so on in m"), "{in_mm}");
     let limp = ManipulatorOptions { bending_stiffness_n_m2: 2e-6, ..ManipulatorOptions::published() };
     let beyond = compare(&ManipulatorParams::new(&limp).unwrap(), &run, None, &Way::ALL).unwrap_err();
     assert!(matches!(beyond, ContinuumError::BeyondModel { .. }), "{beyond}");

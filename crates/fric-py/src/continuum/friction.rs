@@ -1,6 +1,5 @@
 //! `friction` at every hole, and `hole`: μ of a single one.
 
-use fric_tendon::Tendon;
 use fric_tendon_lab::ContinuumError;
 use fric_tendon_lab::friction::{HoleLoad, hole_coefficient};
 use fric_tendon_lab::result::{FrictionResult, HoleResult};
@@ -26,7 +25,7 @@ use crate::results;
 pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<Py<PyAny>> {
     let files = run.files();
     let run = &in_base_frame(manipulator, &run.run)?;
-    run.check_capacity(manipulator.file.params().capacity_n(Tendon::Agonist))?;
+    run.check_sizes(manipulator.file.params())?;
     let guarded = py.detach(|| guarded(manipulator, run))?.ok_or(if run.has_shifts() {
         ContinuumError::NoGratings
     } else {
@@ -84,6 +83,7 @@ pub fn continuum_hole(
         })
         .collect();
     let result = HoleResult::new(&hole_coefficient(&loads)?);
+    log::warn(py, result.warning().as_slice())?;
     let provenance = Provenance::of_call("fric.continuum.hole", &[], None);
     let page = |provenance: &Provenance| report::hole(&result, provenance);
     let shown = results::shown(py, result.summary(), &result, page, report::hole_table(&result), &provenance)?;

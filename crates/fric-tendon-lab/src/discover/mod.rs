@@ -40,7 +40,6 @@ mod worse;
 
 use fric_lab::discover::Verdict;
 use fric_lab::discover::result::DiscoverResult;
-use fric_tendon::Tendon;
 use fric_tendon::edit::ManipulatorEdit;
 use fric_tendon::file::ManipulatorFile;
 
@@ -90,7 +89,7 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     if !run.has_shifts() {
         return Err(lack("gratings", "`shift_1_nm` and so on"));
     }
-    run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
+    run.check_sizes(file.params())?;
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
     let (run, base_noise) = steadied(run);
     let run = &run;

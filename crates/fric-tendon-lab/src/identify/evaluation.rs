@@ -93,7 +93,7 @@ impl Runs {
         let lack =
             |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
         for run in runs {
-            run.check_capacity(file.params().capacity_n(Tendon::Agonist))?;
+            run.check_sizes(file.params())?;
             match (run.has_tension(), run.has_shifts(), run.has_markers()) {
                 (true, _, true) => {}
                 (true, true, false) | (false, true, true) if gratings.is_some() => {}

@@ -18,7 +18,7 @@ use fric_tendon::edit::{GratingLine, ManipulatorEdit};
 use fric_tendon::file::ManipulatorFile;
 use nalgebra::DMatrix;
 
-use self::evaluation::Runs;
+use self::evaluation::{Runs, State};
 use self::least_squares::{Solution, solve};
 use super::base_noise::{BaseNoise, steadied};
 use super::error::ContinuumError;
@@ -110,6 +110,14 @@ pub fn identify(
         start = solution.state;
         start.unknowns.retain(|(unknown, _)| *unknown != held);
     };
+    // Errors of the lines that are not written are no part of the fitted file.
+    let as_written = State { lines: runs.start(&[]).lines, ..solution.state.clone() };
+    let written = if quantities.contains(&Quantity::Calibration) {
+        None
+    } else {
+        Some(runs.evaluate(&as_written, Some(&solution.evaluation)).ok_or(ContinuumError::NotIdentified)?)
+    };
+    let after = written.as_ref().unwrap_or(&solution.evaluation);
     let mut wanted = solution.state.tables(&runs.given);
     tidy(&given, &mut wanted);
     let mut edit = ManipulatorEdit::between(&given, &wanted);
@@ -120,7 +128,7 @@ pub fn identify(
         &given,
         names,
         &counts,
-        (&before, &solution),
+        (&before, after),
         (&unknowns, &wanted, &covariance),
         undetermined,
         base_noise,

@@ -7,7 +7,6 @@ use serde::Serialize;
 
 use super::super::base_noise::BaseNoise;
 use super::evaluation::{Evaluation, Row};
-use super::least_squares::Solution;
 use super::quantity::Quantity;
 use super::unknown::Unknown;
 
@@ -129,7 +128,7 @@ impl TendonFitResult {
         given: &ManipulatorTables,
         names: &[String],
         samples: &[usize],
-        (before, solution): (&Evaluation, &Solution),
+        (before, after): (&Evaluation, &Evaluation),
         (unknowns, tables, covariance): (&[Unknown], &ManipulatorTables, &DMatrix<f64>),
         undetermined: Vec<Undetermined>,
         base_noise: Vec<Option<BaseNoise>>,
@@ -150,7 +149,7 @@ impl TendonFitResult {
             given: numbers(&|_, unknown| unknown.value(given)),
             undetermined,
             before: Disagreement::of(before),
-            after: Disagreement::of(&solution.evaluation),
+            after: Disagreement::of(after),
         }
     }
 }

@@ -22,8 +22,12 @@ impl TendonFitResult {
         if self.runs.len() == 1 {
             text = text.replace(" of 1 runs", "");
         }
-        text += &table(&["", "given", "found"], 1, &rows);
-        text += "\nValues with 95 % intervals.\n";
+        if rows.is_empty() {
+            text += "Nothing is found: the runs determine none of the numbers, and the file keeps them.\n\n";
+        } else {
+            text += &table(&["", "given", "found"], 1, &rows);
+            text += "\nValues with 95 % intervals.\n";
+        }
         for line in [differences("before", &self.before), differences("after", &self.after)] {
             text += &line;
         }

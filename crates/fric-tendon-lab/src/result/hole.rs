@@ -30,6 +30,16 @@ impl HoleResult {
         Self { format: Self::FORMAT, loads: count, mu, standard_error, interval }
     }
 
+    /// Returns a warning, one sentence, if the coefficient is negative.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        (self.interval[1] < 0.0).then(|| {
+            "the tension falls towards the base, which no friction does while the tendon is pulled: `tension_1_n` is the side of the base; are \
+             the two exchanged?"
+                .to_owned()
+        })
+    }
+
     /// Returns a summary for people.
     #[must_use]
     pub fn summary(&self) -> String {

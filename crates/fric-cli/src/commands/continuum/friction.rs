@@ -1,6 +1,5 @@
 //! `continuum friction`: the friction at every hole, from the gratings.
 
-use fric_tendon::Tendon;
 use fric_tendon_lab::ContinuumError;
 use fric_tendon_lab::result::FrictionResult;
 
@@ -25,7 +24,7 @@ pub fn run(arguments: &FrictionArguments) -> Outcome {
             },
         ));
     }
-    run.check_capacity(model.file.params().capacity_n(Tendon::Agonist)).map_err(|error| about(&paths.run, error))?;
+    run.check_sizes(model.file.params()).map_err(|error| about(&paths.run, error))?;
     let guarded =
         read_gratings(&paths.run, &model, &run)?.ok_or_else(|| about(&paths.model, ContinuumError::NoGratings))?;
     let result = FrictionResult::new(model.name(), &run, &guarded);

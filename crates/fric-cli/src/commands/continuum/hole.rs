@@ -8,6 +8,7 @@ use super::{about, read_table};
 use crate::arguments::continuum::HoleArguments;
 use crate::failure::Outcome;
 use crate::output::JsonTarget;
+use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &HoleArguments) -> Outcome {
@@ -17,5 +18,6 @@ pub fn run(arguments: &HoleArguments) -> Outcome {
     let steps = hole_loads(&table).map_err(|error| about(loads, error))?;
     let found = hole_coefficient(&steps).map_err(|error| about(loads, error))?;
     let outcome = HoleResult::new(&found);
+    warn_all(outcome.warning().as_slice());
     json.finish(&outcome, &outcome.summary(), Vec::new())
 }

@@ -1,6 +1,5 @@
 //! `continuum shape`: compares shapes by four friction models with the markers.
 
-use fric_tendon::Tendon;
 use fric_tendon_lab::ContinuumError;
 use fric_tendon_lab::comparison::{Selection, compare};
 use fric_tendon_lab::gratings::Gratings;
@@ -29,7 +28,7 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
     let outputs = Outputs::prepare(page, &[paths.run.clone(), paths.model.clone()], None)?;
     let (model, run) = read_run(paths)?;
     let params = model.file.params();
-    run.check_capacity(params.capacity_n(Tendon::Agonist)).map_err(|error| about(&paths.run, error))?;
+    run.check_sizes(params).map_err(|error| about(&paths.run, error))?;
     let guarded = read_gratings(&paths.run, &model, &run)?;
     let measured = guarded.as_ref().map(|guarded| guarded.measured.as_slice());
     let wants_others = wanted.iter().any(|way| *way != Way::Measured);

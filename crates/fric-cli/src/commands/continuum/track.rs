@@ -72,7 +72,7 @@ pub fn run(arguments: &TrackArguments) -> Outcome {
                 },
             ));
         }
-        run.check_capacity(params.capacity_n(Tendon::Agonist)).map_err(|error| about(after, error))?;
+        run.check_sizes(params).map_err(|error| about(after, error))?;
         warn_all(
             &run.begin_warning().map(|text| format!("{}: {text}", after.display())).into_iter().collect::<Vec<_>>(),
         );
