@@ -288,7 +288,23 @@ fn the_attached_robot_file_is_the_one_that_is_rewritten() {
     // Whichever of several logs has it.
     place.write("bare.mcap", super::logs::rewrite(bench_log(), super::logs::Storage::Zstd, None, |_, _| true));
     let run = fit(&place, &["bare.mcap", "log.mcap"]).succeeds();
-    assert!(run.stdout.starts_with("bench: "), "{run:#?}");
+    assert!(run.stdout.contains("\nbench: "), "{run:#?}");
+}
+
+#[test]
+fn a_forgotten_sensor_pulley_is_told_and_a_zero_is_not() {
+    let place = Place::empty();
+    place.write("log.mcap", platform_log());
+    let robot = platform_robot();
+    assert!(robot.contains(", sensor = true"), "{robot}");
+    place.write("robot.toml", robot.replace(", sensor = true", ""));
+    let words = ["cable1, cable2, cable3, cable4,", "the likely cause is a sensor that holds a pulley of 180°"];
+    fit(&place, &["log.mcap", "--model", "robot.toml", "--parameters", "mu,offset_n"]).warns(&words);
+    // A zero at the platform is what `fit` is there for.
+    place.write("robot.toml", robot.replacen("mu = ", "offset_n = 3.0, mu = ", 1));
+    place.run(&["simulate", "--model", "robot.toml", "-o", "zero.mcap", "--duration", "5"]).succeeds();
+    let run = fit(&place, &["zero.mcap", "--model", "robot.toml"]);
+    assert!(!run.stderr.contains("the force by the sensor is"), "{run:#?}");
 }
 
 #[test]

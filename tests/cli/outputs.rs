@@ -32,17 +32,24 @@ fn what_exists_is_replaced_only_with_force() {
 #[test]
 fn inputs_are_never_overwritten() {
     let place = Place::with_log();
+    // A log named as another kind of file is refused before.
+    place.write("robot", place.read("robot.toml"));
     for option in OPTIONS {
         for force in [&[][..], &["--force"]] {
             let over = |output| place.run_in_vain(&[&["replay", "log.mcap", option, output], force].concat());
             over("log.mcap").fails(1, &["log.mcap is an input"]).advises(&["another output"]);
             over("./log.mcap").fails(1, &["./log.mcap is an input"]);
-            let start = ["replay", "log.mcap", "--model", "robot.toml", option, "robot.toml"];
-            place.run_in_vain(&[&start, force].concat()).fails(1, &["robot.toml is an input"]);
+            let start = ["replay", "log.mcap", "--model", "robot", option, "robot"];
+            place.run_in_vain(&[&start, force].concat()).fails(1, &["robot is an input"]);
         }
     }
-    let simulate = ["simulate", "--model", "robot.toml", "-o", "robot.toml", "--force"];
-    place.run_in_vain(&simulate).fails(1, &["robot.toml is an input"]);
+    let simulate = ["simulate", "--model", "robot", "-o", "robot", "--force"];
+    place.run_in_vain(&simulate).fails(1, &["robot is an input"]);
+    for command in [&["replay", "log.mcap"][..], &["convert", "log.mcap"], &["simulate", "--model", "robot.toml"]] {
+        place
+            .run_in_vain(&[command, &["-o", "run.csv"]].concat())
+            .fails(2, &["what is written is MCAP; name it `.mcap`"]);
+    }
     let info = ["info", "log.mcap", "--json", "log.mcap", "--force"];
     place.run_in_vain(&info).fails(1, &["log.mcap is an input"]);
 }

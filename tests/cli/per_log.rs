@@ -107,7 +107,7 @@ fn what_cannot_be_per_log_is_refused_before_anything_is_read() {
         run
     };
     let two = ["a.mcap", "b.mcap"];
-    refused(&two, "offset").fails(2, &["--per-log: unknown parameter `offset`", "`offset_n`"]);
+    refused(&two, "offset").fails(2, &["--per-log: there is no parameter `offset`"]).advises(&["`offset_n`"]);
     refused(&two, "offset_n,offset_n").fails(2, &["--per-log: `offset_n` is named twice"]);
     refused(&two, "mu").fails(2, &["--per-log: `mu` has one value for all logs"]).advises(&["`offset_n`"]);
     refused(&two, "sensor_drift.rate_n_per_s").fails(2, &["has one value for all logs"]).advises(&["`offset_n`"]);

@@ -168,7 +168,7 @@ pub struct ReplayArguments {
     #[command(flatten)]
     pub log: LogArguments,
     /// Write forces, friction, wrench and status to this MCAP file
-    #[arg(short, long, value_name = "OUT.mcap", value_parser = a_file())]
+    #[arg(short, long, value_name = "OUT.mcap", value_parser = a_recording())]
     pub output: Option<PathBuf>,
     /// Write a page with the errors over time to this HTML file
     #[arg(long, value_name = "R.html", value_parser = a_file())]
@@ -279,7 +279,7 @@ pub struct ConvertArguments {
     #[command(flatten)]
     pub log: LogArguments,
     /// The MCAP file to write
-    #[arg(short, long, value_name = "OUT.mcap", required = true, value_parser = a_file())]
+    #[arg(short, long, value_name = "OUT.mcap", required = true, value_parser = a_recording())]
     pub output: PathBuf,
     /// Replace the output if it exists
     #[arg(long)]
@@ -337,7 +337,7 @@ pub struct SimulateArguments {
     #[arg(long, value_name = "M.toml", required = true)]
     pub model: PathBuf,
     /// The log to write
-    #[arg(short, long, value_name = "LOG.mcap", required = true, value_parser = a_file())]
+    #[arg(short, long, value_name = "LOG.mcap", required = true, value_parser = a_recording())]
     pub output: PathBuf,
     /// What the platform does
     #[arg(long, value_name = "RUN", value_enum, default_value_t)]
@@ -516,6 +516,18 @@ pub struct ResultArguments {
 fn a_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| {
         if path.as_os_str() == "-" { Err("this output cannot go to stdout; name a file") } else { Ok(path) }
+    })
+}
+
+/// Endings of files that a recording is not.
+const OTHER_ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "json", "html", "toml", "db3", "bag", "xlsx", "mat", "parquet"];
+
+/// An MCAP file, which is not named like another kind of file.
+fn a_recording() -> impl TypedValueParser<Value = PathBuf> {
+    a_file().try_map(|path| {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+        let is_other = OTHER_ENDINGS.contains(&ending.as_str());
+        if is_other { Err("what is written is MCAP; name it `.mcap`") } else { Ok(path) }
     })
 }
 

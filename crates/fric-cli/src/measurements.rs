@@ -124,7 +124,7 @@ fn take_all(
 }
 
 fn read_one(reader: &mut SignalReader, samples: &mut SampleStore<'_>, cable_count: usize) -> Outcome<Holdings> {
-    let mut holdings = Holdings::new(cable_count);
+    let mut holdings = Holdings::new(cable_count).of_columns(reader.log().column_names().is_some());
     let end = take_all(reader, |sample| {
         holdings.add(sample);
         samples.add(sample)

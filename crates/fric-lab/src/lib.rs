@@ -28,6 +28,7 @@ pub mod hysteresis;
 pub mod random;
 pub mod replay;
 mod samples;
+mod scale;
 mod search;
 pub mod simulate;
 pub mod statistics;

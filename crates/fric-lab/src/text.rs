@@ -1,6 +1,6 @@
 //! Formats numbers and tables for people.
 
-use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, presets};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width, presets};
 
 /// Returns a table with a header. All columns but the first `left` are right-aligned. A line break in a heading makes the header two lines high.
 #[must_use]
@@ -8,18 +8,30 @@ pub fn table(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> Str
     lines_of(&aligned(header, left, rows))
 }
 
-/// Returns the same with a text in the last column, which is left-aligned and wrapped so that the table is at most [`WIDTH`] wide.
+/// Least width of the last column of a [`table_with_text`].
+const LEAST_TEXT: u16 = 24;
+
+/// Returns the same with a text in the last column, which is left-aligned and wrapped so that the table is at most [`WIDTH`] wide. If it would be
+/// narrower than 24 characters, the widest of the other columns is wrapped too.
 #[must_use]
 pub fn table_with_text(header: &[&str], left: usize, rows: &[impl AsRef<[String]>]) -> String {
     let mut table = aligned(header, left, rows);
     let width = u16::try_from(WIDTH).unwrap_or(u16::MAX);
     table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
     let last = header.len().saturating_sub(1);
+    // Each column has a space on either side.
+    let widths: Vec<u16> = table.column_max_content_widths().iter().map(|content| content.saturating_add(2)).collect();
+    let others = widths.get(..last).unwrap_or_default();
+    let surplus = others.iter().fold(LEAST_TEXT, |sum, width| sum.saturating_add(*width)).saturating_sub(width);
+    let widest = others.iter().enumerate().max_by_key(|(_, width)| **width).map(|(place, _)| place);
     for (place, column) in table.column_iter_mut().enumerate() {
-        if place < last {
-            column.set_constraint(ColumnConstraint::ContentWidth);
-        } else {
+        if place == last {
             column.set_cell_alignment(CellAlignment::Left);
+        } else if surplus > 0 && Some(place) == widest {
+            let narrowed = widths.get(place).map_or(0, |width| width.saturating_sub(surplus)).max(LEAST_TEXT);
+            column.set_constraint(ColumnConstraint::Absolute(Width::Fixed(narrowed)));
+        } else {
+            column.set_constraint(ColumnConstraint::ContentWidth);
         }
     }
     lines_of(&table)

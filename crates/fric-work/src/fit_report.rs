@@ -1,13 +1,14 @@
-//! A fit report in the style of lmfit: values with errors, correlations, undetermined parameters.
+//! A fit for people: its verdict with the tables, and a report in the style of lmfit with values, errors, correlations and undetermined parameters.
 
 use std::fmt::Write as _;
 
 use fric_lab::errors::ForceError;
 use fric_lab::fit::CableFit;
 use fric_lab::fit::result::{FitCableResult, FitResult};
-use fric_lab::text::{digits_of, number, plain, significant};
+use fric_lab::text::{digits_of, number, plain, significant, wrapped};
 
 use crate::report::fit::remark;
+use crate::verdict::of_fit;
 
 /// Minimum magnitude of a reported correlation.
 const LEAST_CORRELATION: f64 = 0.5;
@@ -37,6 +38,12 @@ pub fn correlations(fit: &CableFit) -> Vec<Correlation> {
     let mut strong: Vec<Correlation> = pairs.filter_map(of_pair).collect();
     strong.sort_by(|one, other| other.value.abs().total_cmp(&one.value.abs()));
     strong
+}
+
+/// Returns the verdict and the tables for people.
+#[must_use]
+pub fn summary(result: &FitResult) -> String {
+    format!("{}\n{}", wrapped("", &of_fit(result).sentence), result.summary())
 }
 
 /// Returns the report; `fits` belong to the result.

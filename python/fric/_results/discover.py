@@ -221,6 +221,8 @@ class CableDiscovery(Value):
     """Values of the extended model by the keys of the robot file. Those of an effect are named like "stribeck.ratio"."""
     standard_errors: dict[str, float]
     """Standard errors of the fitted values."""
+    at_bound: list[str]
+    """Friction parameters at the greatest value of their range, which the samples would exceed."""
     per_log: list[LogValues]
     """What each log has of its own (`discover(..., per_log=[...])`), in the order of the logs; empty if they share all values. `parameters` has that of
     the last log."""
@@ -283,6 +285,7 @@ class DiscoverResult(Result):
             CableDiscovery(
                 before=ForceError._of(cable.pop("before", None)),
                 after=ForceError._of(cable.pop("after", None)),
+                at_bound=cable.pop("at_bound", []),
                 per_log=cable.pop("per_log", []),
                 where_in_words=words,
                 time_s=time_s,

@@ -19,6 +19,7 @@ use crate::measurements::watched;
 use crate::model::Model;
 use crate::output::{self, Written};
 use crate::progress::{self, STRIDE};
+use crate::warnings::warn;
 
 /// Runs the command.
 pub fn run(arguments: &ExciteArguments) -> Outcome {
@@ -45,6 +46,7 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         }
         None => (Excitation::new(&model.robot, &options).map_err(refused)?, Vec::new()),
     };
+    excitation.warning().iter().for_each(|text| warn(text));
     let mut table = SetPointTable::new(file);
     table.write_header(&model.robot.cable_names(), &excitation)?;
     let mut series = RunSeries::new(excitation.total_cycles());
@@ -82,12 +84,16 @@ fn asked(model: &Model, arguments: &DesignArguments) -> Outcome<Option<Vec<Quest
     match questions(&model.robot, request, cables.as_deref(), *noise_n) {
         Ok(questions) => Ok(Some(questions)),
         Err(QuestionError::Names(problem)) => Err(Failure::usage(format!("{flag}: {problem}"))),
-        Err(error) => Err(Failure::new(error).in_file(found.as_deref().unwrap_or(Path::new(flag)))),
+        Err(error) => Err(Failure::new(error)
+            .in_file(found.as_deref().unwrap_or(Path::new(flag)))
+            .advise("Write it with `fric-cli discover LOG --model M.toml --json found.json`, or name the question with --separate or --determine.")),
     }
 }
 
 fn read_text(path: &Path) -> Outcome<String> {
-    std::fs::read_to_string(path).map_err(|error| Failure::new(fric_log::reason(&error)).in_file(path))
+    std::fs::read_to_string(path).map_err(|error| {
+        Failure::new(fric_log::reason(&error)).in_file(path).advise("Check the path given with --for.")
+    })
 }
 
 /// Converts an error to a failure; a wrong number is a mistake on the command line, the rest concerns the robot or the run.

@@ -7,9 +7,8 @@ mod storage;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use fric_core::robot::file::ReferenceTable;
 use fric_core::text_file::printable;
-use fric_lab::fit::readiness::{self, Holdings, Readiness, without_reference};
+use fric_lab::fit::readiness::{self, Holdings, Readiness};
 use fric_lab::text::{table, table_with_text};
 use fric_log::log::Log;
 use fric_log::output::OutputFile;
@@ -234,7 +233,7 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
     let paths = model.signal_paths()?;
     let bar = progress::bytes(log.total_bytes());
     let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names()).within(part);
-    let mut holdings = Holdings::new(model.robot.cable_names().len());
+    let mut holdings = Holdings::new(model.robot.cable_names().len()).of_columns(reader.log().column_names().is_some());
     let mut stamp_nanos: Option<[i64; 2]> = None;
     let problem = loop {
         if holdings.rows.is_multiple_of(STRIDE) {
@@ -333,12 +332,7 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
     }
     let mut errors = Vec::new();
     if !holdings.has_reference() {
-        errors.push(match &model.robot.options().log.reference {
-            ReferenceTable::Signal(path) => {
-                format!("no reference: the log has no force at the platform on {path} to compare with")
-            }
-            known @ ReferenceTable::Known(_) => without_reference(known).0,
-        });
+        errors.push(holdings.without_reference(&model.robot).0);
     } else if needs_pose && holdings.posed == 0 {
         errors.push(no_pose());
     }

@@ -85,7 +85,7 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         warn_all(&model.robot.warnings());
         warn_all(&replay.cable_warnings(&model.robot));
     } else {
-        warn_all(&replay.warnings(&model.robot));
+        warn_all(&replay.warnings(&model.robot, reader.log().column_names().is_some()));
     }
 
     let outcome = ReplayResult::new(&model.robot, &replay, &times)

@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use fric_core::parameters::{OFFSET, SIGMA, Values};
+use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DMatrix;
 
 use super::determined::{HALF_INTERVAL, Yardstick};
@@ -132,9 +132,7 @@ impl Solution {
             // For a determined parameter a hundredth of a standard error is negligible.
             let is_determined = knowledge.vagueness.get(place).is_some_and(|vagueness| *vagueness <= 1.0);
             let near = if is_determined { NEAR_ERRORS * knowledge.covariance[(place, place)].sqrt() } else { 0.0 };
-            let bound = Coordinate::of(&unknown.parameter, cycle_s).bound_at(*value, near);
-            // Beyond the greatest stiffness there is no presliding, which a file expresses by omitting σ.
-            if let Some(bound) = bound.filter(|bound| unknown.parameter.place() != SIGMA || *bound < *value) {
+            if let Some(bound) = Coordinate::of(&unknown.parameter, cycle_s).bound_at(*value, near) {
                 *value = bound;
                 self.at_bound.push(*unknown);
             }

@@ -41,6 +41,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use self::faults::length_noise::{self, LengthNoise};
+use self::faults::timing::Retimed;
 use self::rest::neighbours::neighbours_of;
 
 use crate::fit::{CableRecord, FitError, Progress, Reference, SampleStore, Stages, StoreError};
@@ -105,11 +106,15 @@ fn discover_retimed(
     task: &Task<'_>,
 ) -> Result<(CableDiscovery, Option<RecordingFault>), StoreError> {
     let stop = task.progress.stop_flag();
-    let Some((references_n, fault)) = faults::timing::retimed(record, stop) else {
+    let with = |retimed: &Retimed| {
+        cable::discover_cable(&record.with_interpolated(&retimed.references_n, retimed.noise_reach), task)
+    };
+    let Some(retimed) = faults::timing::retimed(record, stop) else {
         return Ok((cable::discover_cable(record, task)?, None));
     };
-    let found = cable::discover_cable(&record.with_references(&references_n), task)?;
-    drop(references_n);
+    let found = with(&retimed)?;
+    let fault = retimed.fault;
+    drop(retimed.references_n);
     let named = found.findings.iter().any(|finding| finding.effect != Effect::Empirical);
     // A table may represent the late reference itself.
     let values = rest::empirical::without_table(&found.after.values);
@@ -117,9 +122,7 @@ fn discover_retimed(
     let Some(params) = extended else { return Ok((found, Some(fault))) };
     // A missing effect in the given model may have looked like a late reference.
     Ok(match faults::timing::retimed(&record.with_params(&params), stop) {
-        Some((references_n, fault)) => {
-            (cable::discover_cable(&record.with_references(&references_n), task)?, Some(fault))
-        }
+        Some(retimed) => (with(&retimed)?, Some(retimed.fault)),
         None => (cable::discover_cable(record, task)?, None),
     })
 }

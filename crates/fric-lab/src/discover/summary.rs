@@ -1,6 +1,8 @@
 //! The result of a discovery for people: the verdicts of all cables, then the findings on each.
 
-use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WhereResult, WrenchComponent, WrenchGap};
+use super::result::{
+    DiscoverCableResult, DiscoverResult, EffectResult, FaultResult, WhereResult, WrenchComponent, WrenchGap,
+};
 use crate::fit::summary::log_table;
 use crate::text::{listed, table, wrapped};
 
@@ -36,6 +38,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
             && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
             && cable.tried.is_empty()
             && cable.faults.is_empty()
+            && cable.left_out.outliers == 0
             && !cable.is_constant()
     };
     let quiet: Vec<&str> = result.cables.iter().filter(is_quiet).map(|cable| cable.name.as_str()).collect();
@@ -104,11 +107,13 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
         text += &of_effect(effect, told.contains(&effect.kind));
         told.push(effect.kind);
     }
+    text += &cable.bound_in_words().map_or_else(String::new, |bound| line("bound", &bound));
     for (count, tried) in cable.tried.iter().take(MOST_TRIED).enumerate() {
         text += &line(if count == 0 { "tried" } else { "" }, &tried.in_words());
     }
-    for (count, fault) in cable.faults.iter().enumerate() {
-        text += &line(if count == 0 { "recording" } else { "" }, &fault.in_words());
+    let of_recording = cable.faults.iter().map(FaultResult::in_words).chain(cable.outliers_in_words());
+    for (count, sentence) in of_recording.enumerate() {
+        text += &line(if count == 0 { "recording" } else { "" }, &sentence);
     }
     if let Some(rest) = &cable.unexplained {
         for (count, sentence) in rest.in_words().iter().enumerate() {
@@ -122,7 +127,7 @@ fn of_effect(effect: &EffectResult, is_told: bool) -> String {
     let mut text = wrapped(&format!("  {}: ", effect.kind), &effect.values_in_words());
     if !is_told {
         text += &line("  cause", effect.effect.row().cause);
-        text += &line("  remedy", effect.effect.row().remedy);
+        text += &line("  remedy", &effect.remedy());
     }
     if let Some(alternative) = effect.alternative_in_words() {
         text += &line("  else", &alternative);

@@ -128,7 +128,7 @@ fn as_it_is(_: &Around) -> Vec<Start> {
 
 macro_rules! lab {
     ($($effect:ident $file:ident),+; $($second:ident $of:ident,)+) => {
-        $(mod $file;)+
+        $(pub mod $file;)+
 
         /// Returns the lab's entry of an effect; `None` for the friction that every model has.
         pub const fn of(effect: Effect) -> Option<LabEffect> {

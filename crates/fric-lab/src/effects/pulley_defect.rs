@@ -1,6 +1,6 @@
 //! `pulley_defect` in the simulated robot: one pulley's bearing has run dry.
 
-use fric_core::effects::pulley_defect::MU;
+use fric_core::effects::pulley_defect::{MU, PULLEY};
 use fric_core::parameters::{MU as MU_OF_ALL, Values};
 
 use super::truth::{Cause, TruthEffect};
@@ -44,6 +44,17 @@ fn typical(scale: &mut Sizing<'_>) -> Start {
     let pulley = 1.0 + libm::floor(uniform(scale.random, 0.0, 3.0)).min(2.0);
     let mu = scale.mu * (1.0 + scale.about(4.0));
     vec![("pulley", pulley), ("mu", mu)]
+}
+
+/// Returns the values that say the same of the other of two pulleys, if the defective one rubs less than the other.
+pub fn other_way(values: &Values, pulley_count: u32) -> Option<Values> {
+    let (mu, mu_of_all) = (values[MU], values[MU_OF_ALL]);
+    (pulley_count == 2 && values[PULLEY] > 0.0 && mu < mu_of_all).then(|| {
+        let mut other = *values;
+        other[PULLEY] = 3.0 - values[PULLEY];
+        (other[MU], other[MU_OF_ALL]) = (mu_of_all, mu);
+        other
+    })
 }
 
 fn is_more_than_usual(values: &Values, _: &Around) -> bool {

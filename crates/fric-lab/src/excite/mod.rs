@@ -172,6 +172,18 @@ impl Excitation {
         self.hold.as_ref().map(Hold::bounds_n).or(self.loads.of_bench_n())
     }
 
+    /// Returns a warning if the cables of a run without a platform may belong to one.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        let count = self.names.len();
+        (self.work_box.is_none() && count > 1).then(|| {
+            format!(
+                "the robot file gives no `base_m` and `platform_m`: the run moves all {count} cables alike, as on a test bench; if they \
+                 hold a platform, do not drive it: add both to each cable, and the run moves the platform"
+            )
+        })
+    }
+
     /// Returns the wanted force of each cable, N, in a run that states it.
     pub(crate) fn stated_load_n(&self, time_s: f64) -> Option<f64> {
         self.motion.trajectory().load_share_at(time_s).and_then(|share| self.loads.stated_n(share))

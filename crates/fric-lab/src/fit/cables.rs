@@ -304,10 +304,14 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
 /// in a replay.
 fn force_errors(record: &CableRecord<'_>, forces: &Forces, zero_shifts_n: Option<&[f64]>) -> ForceErrors {
     let mut errors = ForceErrors { before_n: frictionless_errors(record), ..ForceErrors::default() };
+    let gain = record.params.frictionless_gain();
     for (cycle, reference_n) in record.references_n.iter().enumerate().filter(|(_, known)| known.is_finite()) {
         errors.reference_n.add(*reference_n);
         let shift_n = zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied();
-        errors.after_n.add(forces.at(cycle).0 - reference_n + shift_n.unwrap_or(0.0));
+        let force_n = forces.at(cycle).0 + shift_n.unwrap_or(0.0);
+        errors.after_n.add(force_n - reference_n);
+        let shown_n = record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n * gain);
+        errors.scale.add(*reference_n, [shown_n, force_n]);
     }
     errors
 }

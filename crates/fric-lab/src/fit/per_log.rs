@@ -4,6 +4,9 @@ use super::FitError;
 use crate::samples::record::{LogZero, Reference};
 use crate::search::vector::Parameter;
 
+const ZEROS: &str =
+    "A zero can have a value per log: `offset_n` at the platform, or `sensor_offset.offset_n` at the sensor.";
+
 /// Returns the zero that each of several logs has of its own, from the names of the parameters; `None` for no name.
 ///
 /// Zeros are what differs between runs of one robot, because sensors are tared anew. All else belongs to the robot: friction, gains, geometry. A drift is
@@ -18,13 +21,14 @@ pub fn zero_per_log(
     reference: Reference,
 ) -> Result<Option<LogZero>, FitError> {
     let zero_of = |parameter: &Parameter| LogZero::ALL.into_iter().find(|zero| zero.place() == parameter.place());
+    let unknown = names.iter().map(|name| name.as_ref().trim()).find(|name| Parameter::named(name).is_none());
+    if let Some(name) = unknown {
+        return Err(FitError::new(format!("there is no parameter `{name}` that each log may have of its own"), ZEROS));
+    }
     let parameters = Parameter::all_named(names.iter().map(|name| name.as_ref().trim()))
         .map_err(|problem| FitError::new(problem, ""))?;
     if let Some(other) = parameters.iter().find(|parameter| zero_of(parameter).is_none()) {
-        return Err(FitError::new(
-            format!("`{other}` has one value for all logs"),
-            "A zero can have a value per log: `offset_n` at the platform, or `sensor_offset.offset_n` at the sensor.",
-        ));
+        return Err(FitError::new(format!("`{other}` has one value for all logs"), ZEROS));
     }
     let zero = match parameters.as_slice() {
         [] => return Ok(None),
@@ -65,7 +69,7 @@ mod tests {
         assert_eq!(of(&[" sensor_offset.offset_n"], 3).unwrap(), Some(LogZero::Sensor));
         assert_eq!(of(&[], 1).unwrap(), None);
         let cause = |names: &[&str], count| of(names, count).unwrap_err().cause;
-        assert!(cause(&["offset"], 2).starts_with("unknown parameter `offset`; did you mean `offset_n`?"));
+        assert_eq!(cause(&["offset"], 2), "there is no parameter `offset` that each log may have of its own");
         assert_eq!(cause(&["offset_n", "offset_n"], 2), "`offset_n` is named twice; name it once");
         assert_eq!(cause(&["mu"], 2), "`mu` has one value for all logs");
         assert!(cause(&["offset_n", "sensor_offset.offset_n"], 2).ends_with("cannot be told apart"));

@@ -22,6 +22,8 @@ pub struct Holdings {
     /// Number of intervals between consecutive rows.
     intervals: u64,
     intervals_s: f64,
+    /// Whether the signals are columns of rows, and no topics.
+    has_columns: bool,
 }
 
 /// The same counts for one cable.
@@ -43,7 +45,14 @@ impl Holdings {
             last_stamp_nanos: None,
             intervals: 0,
             intervals_s: 0.0,
+            has_columns: false,
         }
+    }
+
+    /// States that the signals are columns of rows, as in a CSV log.
+    #[must_use]
+    pub fn of_columns(self, has_columns: bool) -> Self {
+        Self { has_columns, ..self }
     }
 
     /// Counts a row.
@@ -89,6 +98,12 @@ impl Holdings {
     fn balanced_s(&self) -> f64 {
         let rows = if self.wrenched > 0 { self.posed.min(self.wrenched) } else { self.posed };
         rows as f64 * self.intervals_s / self.intervals.max(1) as f64
+    }
+
+    /// Returns the cause if no sample has a reference force, and the advice if there is only one.
+    #[must_use]
+    pub fn without_reference(&self, robot: &RobotFile) -> (String, Option<&'static str>) {
+        without_reference(&robot.options().log.reference, self.has_columns)
     }
 
     /// Whether any cable has a reference.
@@ -170,13 +185,17 @@ impl Lack {
 const SILENT_ADVICE: &str = "Compare the names of the cables in the log with those in the robot file.";
 const SENSOR_ADVICE: &str =
     "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the platform.";
+const COLUMN_ADVICE: &str = "Name their columns under `[log.columns]` in the robot file, such as \"cable1.reference_n\" = { column = \"Load cell [N]\" }, or a force that is known as `reference` under `[log]`.";
 const POSE_ADVICE: &str = "Name the topic of the poses as `pose` under `[log]` in the robot file.";
+const POSE_COLUMN_ADVICE: &str = "Name the columns of the pose under `[log.columns]` in the robot file.";
 const LENGTHS_ADVICE: &str = "Make sure that lengths count from `base_m` to `platform_m`, or name the topic of a measured pose as `pose` under `[log]` in the robot file.";
 
 /// Returns the cause and the advice if there is no pose.
-fn without_pose(log: &LogTable) -> (String, &'static str) {
+fn without_pose(log: &LogTable, has_columns: bool) -> (String, &'static str) {
     if log.pose_is_from_lengths() {
         ("no sample has a pose from its cable lengths".to_owned(), LENGTHS_ADVICE)
+    } else if has_columns {
+        ("the log has no pose in columns `pose.x_m` to `pose.qw`".to_owned(), POSE_COLUMN_ADVICE)
     } else {
         (format!("the log has no pose on {}", log.pose), POSE_ADVICE)
     }
@@ -227,7 +246,7 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Re
     };
     let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|of| of.referenced == 0));
     if !cables.is_empty() {
-        let (cause, own_advice) = without_reference(&log.reference);
+        let (cause, own_advice) = holdings.without_reference(robot);
         let can_balance = names.len() > 1 && geometry(robot, "").is_none();
         let (advice, instead) = match own_advice {
             Some(own) => (own, None),
@@ -239,7 +258,7 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Re
     let follows_pose = |cable: usize| params.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
     let cables = if holdings.posed == 0 { without(&readiness, &follows_pose) } else { Vec::new() };
     if !cables.is_empty() {
-        let (cause, advice) = without_pose(log);
+        let (cause, advice) = without_pose(log, holdings.has_columns);
         readiness.lacks.push(Lack {
             cause: format!("{cause}, and so no wrap of the last pulley{}", of(&names, &cables)),
             advice,
@@ -250,10 +269,12 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Re
     readiness
 }
 
-/// Returns the cause if no sample has a reference force, and the advice if the reference is known rather than measured.
-#[must_use]
-pub fn without_reference(reference: &ReferenceTable) -> (String, Option<&'static str>) {
+/// Returns the cause if no sample has a reference force, and the advice if there is only one. `has_columns` tells columns of rows from topics.
+pub(crate) fn without_reference(reference: &ReferenceTable, has_columns: bool) -> (String, Option<&'static str>) {
     match reference {
+        ReferenceTable::Signal(_) if has_columns => {
+            ("the log has no reference forces in columns such as `cable1.reference_n`".to_owned(), Some(COLUMN_ADVICE))
+        }
         ReferenceTable::Signal(path) => (format!("the log has no reference forces on {path}"), None),
         ReferenceTable::Known(known) if known.hanging_mass_kg.is_some() => {
             let cause = format!(
@@ -287,7 +308,7 @@ pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readin
         });
     }
     if holdings.posed == 0 {
-        let (cause, advice) = without_pose(log);
+        let (cause, advice) = without_pose(log, holdings.has_columns);
         lacks.push(Lack {
             cause: format!("{cause}: the directions of the cables are not known"),
             advice,
@@ -296,12 +317,22 @@ pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readin
         });
     }
     let mass_kg = robot.params().mass_kg();
+    let (of_wrench, wrench_advice) = if holdings.has_columns {
+        (
+            "in columns `wrench.fx_n` to `wrench.tz_nm`".to_owned(),
+            "Name the columns under `[log.columns]`, or give `mass_kg` under `[platform]`, in the robot file.",
+        )
+    } else {
+        (
+            format!("on {}", log.wrench),
+            "Name the topic as `wrench` under `[log]`, or give `mass_kg` under `[platform]`, in the robot file.",
+        )
+    };
     if holdings.wrenched == 0 && mass_kg > 0.0 {
         lacks.push(Lack {
             cause: format!(
-                "the log has no wrench on {}: it is taken from the platform's mass of {mass_kg} kg and the pose, in \
-                 quiet motion only",
-                log.wrench
+                "the log has no wrench {of_wrench}: it is taken from the platform's mass of {mass_kg} kg and the pose, in quiet \
+                 motion only"
             ),
             advice: "",
             instead: None,
@@ -309,8 +340,8 @@ pub fn by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readin
         });
     } else if holdings.wrenched == 0 {
         lacks.push(Lack {
-            cause: format!("the log has no wrench on {}, and the robot file no mass to take it from", log.wrench),
-            advice: "Name the topic as `wrench` under `[log]`, or give `mass_kg` under `[platform]`, in the robot file.",
+            cause: format!("the log has no wrench {of_wrench}, and the robot file no mass to take it from"),
+            advice: wrench_advice,
             instead: None,
             cables: all,
         });

@@ -8,6 +8,7 @@ use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 use crate::samples::cable::{CableRecord, Zeroed};
 use crate::samples::record::LogZero;
 use crate::samples::selection::SampleCounts;
+use crate::scale::Scale;
 use crate::search::optimizer::Termination;
 use crate::search::vector::Parameter;
 
@@ -16,6 +17,8 @@ use crate::search::vector::Parameter;
 pub struct ForceErrors {
     /// The reference itself, N.
     pub reference_n: Deviation,
+    /// The forces beside the reference.
+    pub(crate) scale: Scale,
     /// Frictionless force minus reference, N.
     pub before_n: Deviation,
     /// Compensated force minus reference, N.
@@ -119,14 +122,15 @@ pub struct WrenchFit {
 }
 
 impl CableFit {
-    /// Returns the standard error of a parameter, in its unit; `None` if it was not fitted.
+    /// Returns the standard error of a parameter, in its unit; `None` if it was not fitted, or if the error exceeds the parameter's range.
     #[must_use]
     pub fn standard_error(&self, parameter: &Parameter) -> Option<f64> {
         if let Some(last) = LogValue::last(&self.per_log).filter(|last| last.parameter == *parameter) {
             return Some(last.standard_error);
         }
         let place = self.fitted.iter().position(|fitted| fitted == parameter)?;
-        Some(self.covariance.get((place, place))?.sqrt())
+        let row = parameter.row();
+        Some(self.covariance.get((place, place))?.sqrt()).filter(|error| error.is_nan() || *error <= row.max - row.min)
     }
 
     /// Returns a cable's cycles with the zero of each log changed in the data, so that `values` hold for all; `None` if all logs have the same zero.

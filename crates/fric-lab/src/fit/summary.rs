@@ -22,6 +22,9 @@ pub(crate) fn describe(result: &FitResult) -> String {
     text += &legend(result);
     text += "\nstandard errors; ± twice as much holds the value with 95 %\n\n";
     text += &error_table(result);
+    if FRICTION.iter().any(|shown| result.cables.iter().any(|cable| shown.is_conditional(result, cable))) {
+        text += "\n* holds only with the kept value of an open combination, see below\n";
+    }
     for effect in Effect::CATALOGUE {
         text += &effect_table(result, *effect);
     }
@@ -67,7 +70,8 @@ impl Shown {
     /// Returns the value, in brackets if it is not identified but taken from the robot file.
     fn value(&self, cable: &FitCableResult) -> String {
         let text = self.of(&cable.parameters).map(|value| number(value, self.digits));
-        let is_identified = value_of(&cable.standard_errors, self.place).is_some();
+        let is_at_bound = name_of(self.place).is_some_and(|name| cable.at_bound.contains(&name));
+        let is_identified = is_at_bound || value_of(&cable.standard_errors, self.place).is_some();
         cell(text.map(|text| if is_identified { text } else { format!("({text})") }))
     }
 
@@ -75,14 +79,28 @@ impl Shown {
         value_of(&cable.standard_errors, self.place).and_then(|_| self.of(&cable.parameters))
     }
 
-    fn error(&self, cable: &FitCableResult) -> String {
-        cell(self.of(&cable.standard_errors).map(plain))
+    /// Returns the standard error, with a mark if it holds only with kept values.
+    fn error(&self, result: &FitResult, cable: &FitCableResult) -> String {
+        let mark = if self.is_conditional(result, cable) { "*" } else { "" };
+        cell(self.of(&cable.standard_errors).map(|error| plain(error) + mark))
+    }
+
+    /// Whether the value is identified, and moves with one that is kept.
+    fn is_conditional(&self, result: &FitResult, cable: &FitCableResult) -> bool {
+        let Some(name) = name_of(self.place).filter(|_| self.identified(cable).is_some()) else { return false };
+        let moved = result.cables.iter().flat_map(|of| &of.open).flat_map(|open| open.0.iter().skip(1));
+        moved.into_iter().any(|part| part.cable == cable.name && part.parameter == name)
     }
 }
 
 /// Returns the number of a parameter by its index.
 fn value_of(numbers: &Numbers, place: usize) -> Option<f64> {
-    numbers.get(&Parameter::all().nth(place)?.to_string())
+    numbers.get(&name_of(place)?)
+}
+
+/// Returns the name of a parameter by its index.
+fn name_of(place: usize) -> Option<String> {
+    Parameter::all().nth(place).map(|parameter| parameter.to_string())
 }
 
 /// Returns the mean of the available numbers.
@@ -113,7 +131,7 @@ impl Column {
         let cables = &result.cables;
         cables.iter().any(|cable| shown.of(&cable.standard_errors).is_some()).then(|| Self {
             header: format!("± {}\n{}", shown.symbol, shown.unit),
-            cells: cables.iter().map(|cable| shown.error(cable)).collect(),
+            cells: cables.iter().map(|cable| shown.error(result, cable)).collect(),
             last: String::new(),
         })
     }

@@ -14,6 +14,7 @@ use std::collections::VecDeque;
 use fric_core::{AnyCompensator, CableOutput, CableStatus, ParamError, Pose, RobotParams, Sample, Wrench};
 
 use crate::clock::Clock;
+use crate::scale::Scale;
 use crate::weight::Weight;
 
 pub use error::Deviation;
@@ -29,6 +30,8 @@ pub struct CableErrors {
     pub(crate) poseless_end_count: u64,
     /// The flags before these cycles.
     pub(crate) flags_before_end: u32,
+    /// The forces beside the reference.
+    pub(crate) scale: Scale,
     /// Frictionless force minus reference, N.
     pub before_n: Deviation,
     /// Compensated force minus reference, N.
@@ -192,6 +195,7 @@ impl Replay {
                 errors.flags_before_end = errors.flags;
                 errors.poseless_end_count = 0;
             }
+            errors.scale.add(*reference_n, [output.frictionless_n, output.force_at_platform_n]);
             errors.before_n.add(output.frictionless_n - reference_n);
             errors.after_n.add(output.force_at_platform_n - reference_n);
         }

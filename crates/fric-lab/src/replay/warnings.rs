@@ -5,6 +5,7 @@ use fric_core::robot::file::{CableTable, RobotFile};
 
 use super::Replay;
 use crate::fit::readiness::without_reference;
+use crate::scale;
 
 /// Poses come at 10 Hz or faster, so a log ends no later than this after the last one.
 const POSE_INTERVAL_S: f64 = 0.1;
@@ -18,12 +19,12 @@ impl Replay {
     }
 
     /// Returns warnings about inputs that had no effect, missing references, uncompensated cables and flagged cycles so far. `robot` is the replayed
-    /// robot.
+    /// robot, and `has_columns` tells a log of rows from one of messages.
     #[must_use]
-    pub fn warnings(&self, robot: &RobotFile) -> Vec<String> {
+    pub fn warnings(&self, robot: &RobotFile, has_columns: bool) -> Vec<String> {
         let mut warnings = robot.warnings();
         if self.cables().iter().all(|cable| cable.before_n.count() == 0) {
-            let (cause, advice) = without_reference(&robot.options().log.reference);
+            let (cause, advice) = without_reference(&robot.options().log.reference, has_columns);
             warnings.push(match advice {
                 None => format!(
                     "{cause} for these cables, without which the columns of errors stay empty; name their topic as \
@@ -33,6 +34,8 @@ impl Replay {
             });
         }
         warnings.extend(self.cable_warnings(robot));
+        let scales = self.cables().iter().map(|cable| cable.scale);
+        warnings.extend(scale::warnings(robot.cable_names().into_iter().zip(scales)));
         warnings
     }
 

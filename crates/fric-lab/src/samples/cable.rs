@@ -42,6 +42,8 @@ pub struct CableRecord<'a> {
     pub(crate) length_play_m: f64,
     /// The zero that each log has of its own.
     pub(crate) per_log: Option<PerLog>,
+    /// Number of consecutive samples that share noise of the reference: 1, but for one that was interpolated.
+    pub(crate) noise_reach: usize,
     /// Noise that the model sees in the sensor force beyond that of the rows.
     pub(crate) added_noise: Option<AddedNoise<'a>>,
 }
@@ -130,6 +132,14 @@ impl<'a> CableRecord<'a> {
         'a: 'b,
     {
         CableRecord { references_n, ..*self }
+    }
+
+    /// Returns the same cycles with references interpolated between so many samples.
+    pub(crate) fn with_interpolated<'b>(&self, references_n: &'b [f64], noise_reach: usize) -> CableRecord<'b>
+    where
+        'a: 'b,
+    {
+        CableRecord { references_n, noise_reach, ..*self }
     }
 
     /// Returns the standard deviation of the white noise of the length, m; `None` if there is no permanent noise, or the cable always moves by more than

@@ -25,6 +25,15 @@ pub fn white_noise(residual: &[f64]) -> Option<f64> {
     white_noise_in(residual, BLOCK)
 }
 
+/// The same for noise that `reach` consecutive samples share in part, as a reference that was interpolated: from samples that far apart.
+pub fn white_noise_apart(residual: &[f64], reach: usize) -> Option<f64> {
+    if reach <= 1 {
+        return white_noise(residual);
+    }
+    let interleaved = (0..reach).flat_map(|first| residual.iter().skip(first).step_by(reach).chain(&[f64::NAN]));
+    white_noise(&interleaved.copied().collect::<Vec<f64>>())
+}
+
 /// The same over blocks of so many samples, for residuals that are short.
 #[must_use]
 pub fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
@@ -103,6 +112,17 @@ mod tests {
             let found = white_noise(&residual).unwrap();
             assert!((found / 0.0141 - 1.0).abs() < 0.015, "{slow_n}: {found}");
         }
+    }
+
+    #[test]
+    fn noise_that_neighbours_share_is_seen_whole() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let noise: Vec<f64> = std::iter::repeat_with(|| StandardNormal.sample(&mut random)).take(50_000).collect();
+        let halves: Vec<f64> = noise.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        let found = white_noise_apart(&halves, 2).unwrap();
+        assert!((found / 0.5_f64.sqrt() - 1.0).abs() < 0.015, "{found}");
+        assert!(white_noise(&halves).unwrap() < 0.5);
+        assert_eq!(white_noise_apart(&noise, 1), white_noise(&noise));
     }
 
     #[test]

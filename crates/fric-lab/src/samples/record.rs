@@ -389,6 +389,7 @@ impl<'a> Measurements<'a> {
             reference_is_known,
             length_play_m: self.length_play_m,
             per_log,
+            noise_reach: 1,
             added_noise: None,
         })
     }

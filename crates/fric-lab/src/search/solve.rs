@@ -1,6 +1,6 @@
 //! Solves a problem from start values to estimates with covariance: search, outliers, undetermined parameters.
 
-use fric_core::parameters::Values;
+use fric_core::parameters::{SIGMA, Values};
 use nalgebra::DMatrix;
 
 use super::optimizer;
@@ -25,6 +25,9 @@ const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
 pub(crate) const CONTRADICTION_RATIO: f64 = 0.01;
 /// A search continues to within this many standard errors of the minimum.
 pub(crate) const NEAR_ERRORS: f64 = 0.01;
+/// A stiffness beyond this fraction of the end of its range has gone there. Half and twice this fraction are the same: contacts have 10⁹ N/m at most,
+/// and where σ has no slope the search ends at 10¹² N/m.
+const LOST_RATIO: f64 = 0.5;
 /// Maximum number of rounds of search and outlier detection.
 const ROUNDS: usize = 3;
 
@@ -106,11 +109,12 @@ pub(crate) fn settle(
     if problem.used.contains(&true) {
         let best = starts
             .into_iter()
-            .map(|start| search(problem, &start, cycle_s))
-            .inspect(|(_, minimum)| solution.evaluation_count += minimum.evaluation_count)
-            .min_by(|(_, one), (_, other)| one.squares.total_cmp(&other.squares));
-        if let Some((found, minimum)) = best {
+            .map(|start| (search(problem, &start, cycle_s), start))
+            .inspect(|((_, minimum), _)| solution.evaluation_count += minimum.evaluation_count)
+            .min_by(|((_, one), _), ((_, other), _)| one.squares.total_cmp(&other.squares));
+        if let Some(((found, minimum), start)) = best {
             (solution.values, solution.termination) = (found, minimum.termination);
+            solution.regain(problem, &start, minimum.squares, cycle_s);
         }
         for _ in 0..ROUNDS {
             if !look_again(problem, &solution.values, weighing, standings) {
@@ -123,6 +127,34 @@ pub(crate) fn settle(
 }
 
 impl Solution {
+    /// Searches again for cables whose presliding a step has taken away, from their start values, as long as that helps. At the end of its range σ has
+    /// no slope and cannot come back, while the other parameters stand in for the presliding that is missing. A cable by itself has starts with several
+    /// σ instead.
+    fn regain(&mut self, problem: &Problem<'_>, start: &[Values], mut squares: f64, cycle_s: f64) {
+        for _ in 1..problem.members.len() {
+            let mut again = self.values.clone();
+            for unknown in unknowns(problem).iter().filter(|unknown| unknown.parameter.place() == SIGMA) {
+                let (_, greatest) = Coordinate::of(&unknown.parameter, cycle_s).range();
+                if let (Some(values), Some(start)) = (again.get_mut(unknown.member), start.get(unknown.member))
+                    && values[SIGMA] >= LOST_RATIO * greatest
+                    && start[SIGMA] < LOST_RATIO * greatest
+                {
+                    *values = *start;
+                }
+            }
+            if again == self.values {
+                return;
+            }
+            let (found, minimum) = search(problem, &again, cycle_s);
+            self.evaluation_count += minimum.evaluation_count;
+            if minimum.squares < squares {
+                (self.values, self.termination, squares) = (found, minimum.termination, minimum.squares);
+            } else {
+                return;
+            }
+        }
+    }
+
     /// Continues from where the last search ended.
     pub(crate) fn search_on(&mut self, problem: &Problem<'_>, cycle_s: f64) {
         let (found, minimum) = search(problem, &self.values, cycle_s);

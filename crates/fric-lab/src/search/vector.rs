@@ -151,7 +151,12 @@ impl Coordinate {
     /// Returns the bound that a search was driven to: the value is nearer to it than any start, or than `near`.
     pub fn bound_at(self, value: f64, near: f64) -> Option<f64> {
         let bound = if value - self.min < self.max - value { self.min } else { self.max };
-        let margin = if self.shape == Shape::Bounded { 0.5 * START_RATIO * (self.max - self.min) } else { 0.0 };
+        let margin = match self.shape {
+            Shape::Bounded => 0.5 * START_RATIO * (self.max - self.min),
+            // A bound comes back from its logarithm with rounding.
+            Shape::Logarithmic => START_RATIO * bound,
+            Shape::Plain => 0.0,
+        };
         ((value - bound).abs() <= margin.max(near)).then_some(bound)
     }
 

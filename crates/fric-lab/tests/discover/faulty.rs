@@ -259,6 +259,16 @@ fn spikes_and_coarse_steps_are_told() {
     assert!(fault.fault == Fault::Spikes && starts_s.len() == 3, "{fault:?}");
     assert!(starts_s.iter().zip([12.345, 23.456, 40.001]).all(|(told_s, true_s)| (told_s - true_s).abs() < 2e-3));
 
+    // Far less than the friction, but twenty times the noise, in which no other sample shares.
+    let mut small = points.clone();
+    for place in [12_345, 23_456, 40_001] {
+        small[place].cable.sensor_force_n += 0.4;
+    }
+    let found = look(&[&small], &truth);
+    assert_complete(&found, truth.floor_n);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    assert!(fault.fault == Fault::Spikes && fault.intervals_s.len() == 3, "{fault:?}");
+
     let mut coarse = points;
     for point in &mut coarse {
         point.cable.sensor_force_n = (point.cable.sensor_force_n / 0.06).round() * 0.06;

@@ -13,6 +13,7 @@ use fric_core::robot::file::{FrictionTable, RobotFile};
 use fric_lab::discover::{CableDiscovery, DiscoverOptions, Fault, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, CaseLog, CaseTruth, Group};
+use fric_lab::simulate::{HiddenEffect, Simulation, SimulationOptions};
 
 /// Looks at the one cable of a case's log.
 fn look(case: &Case) -> (CableDiscovery, CaseTruth) {
@@ -189,4 +190,30 @@ fn hum_is_placed_by_its_frequency_and_hides_no_effect() {
     let (_, hum) = found.faults[0].parameters[0];
     let (_, frequency_hz) = truth.disturbances[0].values()[1];
     assert!((hum - frequency_hz).abs() < 0.05, "{hum} {frequency_hz}");
+}
+
+/// A pulley that rubs more than the other is the same model as the other that rubs less.
+#[test]
+fn of_two_pulleys_the_one_that_rubs_more_is_named() {
+    let text = "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = 0.002\n[[cable]]\nname = \"w\"\n\
+                presliding = \"per_pulley\"\npulleys = [{ wrap_deg = 120.0, sensor = true }, { wrap_deg = 60.0 }]\n\
+                friction = { mu = 0.025, sigma_n_per_m = 3000.0, viscous_n_s_per_m = 0.5 }\n";
+    let robot = RobotFile::parse(text, "bench").unwrap();
+    for pulley in [1.0, 2.0] {
+        let effects = vec![HiddenEffect::parse(&format!("pulley_defect:pulley={pulley},mu=0.06")).unwrap()];
+        let options = SimulationOptions { seed: 1, duration_s: Some(25.0), effects, ..SimulationOptions::default() };
+        let mut simulation = Simulation::new(&robot, &options).unwrap();
+        let params = robot.params();
+        let mut measurements = Measurements::new(&params, Reference::Forces);
+        measurements.start_log();
+        while let Some(sample) = simulation.next_cycle() {
+            measurements.add(&sample);
+        }
+        let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
+        let named: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+        assert_eq!((named, found.verdict), (vec![Effect::PulleyDefect], Verdict::Extended));
+        let [of, mu] = ["pulley_defect.pulley", "pulley_defect.mu"]
+            .map(|name| found.after.values[fric_lab::fit::Parameter::named(name).unwrap().place()]);
+        assert!((of - pulley).abs() < 0.5 && (mu / 0.06 - 1.0).abs() < 0.1, "pulley {of} of {pulley}, mu {mu}");
+    }
 }

@@ -14,6 +14,7 @@ use pyo3::types::PyTuple;
 
 use crate::arrays::{fixed, fixed_rows};
 use crate::errors::{Fault, Outcome};
+use crate::log;
 use crate::results;
 use crate::robot::Robot;
 use crate::watch::{STRIDE, Watch};
@@ -125,6 +126,7 @@ pub fn excite(
         }
         None => (py.detach(|| Excitation::new(&file, &options))?, Vec::new()),
     };
+    log::warn(py, excitation.warning().as_slice())?;
     let mut table = created.map(SetPointTable::new);
     if let Some(table) = &mut table {
         table.write_header(&file.cable_names(), &excitation)?;

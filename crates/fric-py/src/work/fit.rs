@@ -4,7 +4,7 @@ use fric_lab::discover::{CorrectedFit, fit_cables_corrected};
 use fric_lab::fit::readiness;
 use fric_lab::fit::result::{FitResult, Fits};
 use fric_lab::fit::{CableFit, FitOptions, Reference, SampleStore, Weighing, fit_wrench, residuals_n, rewritten};
-use fric_work::fit_report::fit_report;
+use fric_work::fit_report;
 use fric_work::provenance::Provenance;
 use fric_work::report;
 use pyo3::prelude::*;
@@ -110,7 +110,9 @@ pub fn fit(
     let cables = fits.cables().iter().zip(residuals_n).map(cable).collect::<Outcome<Vec<_>>>()?;
     let provenance = Provenance::of_call("fric.fit", &runs.files(), Some((&result.robot, &given.to_toml()?)));
     let page = |provenance: &Provenance| report::fit::page(&result, fits.cables(), provenance);
-    let shown = results::shown(py, result.summary(), &result, page, report::fit::table(&result), &provenance)?;
-    let fields = (shown, fit_report(&result, fits.cables()), Py::new(py, Robot::parse(text, ORIGIN)?)?, cables);
+    let shown =
+        results::shown(py, fit_report::summary(&result), &result, page, report::fit::table(&result), &provenance)?;
+    let fields =
+        (shown, fit_report::fit_report(&result, fits.cables()), Py::new(py, Robot::parse(text, ORIGIN)?)?, cables);
     Ok(results::of(py, "FitResult", fields)?.unbind())
 }

@@ -94,7 +94,7 @@ pub fn replay(
     if let Some(writer) = writer {
         py.detach(|| writer.finish())?;
     }
-    log::warn(py, &replay.warnings(&file))?;
+    log::warn(py, &replay.warnings(&file, false))?;
     let result = ReplayResult::new(&file, &replay, &times).with_corrections(corrections.as_ref());
     let provenance = Provenance::of_call("fric.replay", &log.sources, Some((&result.robot, &text)));
     let page = |provenance: &Provenance| errors::page(&result, &series, provenance);

@@ -93,6 +93,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> T
         kept: last.kept.map(|(worse, mu)| kept(&worse, mu)),
         parameters: Absent,
         standard_errors: Absent,
+        at_bound: Vec::new(),
         faults: Absent,
         unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),
     };

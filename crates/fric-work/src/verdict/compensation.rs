@@ -12,6 +12,9 @@ use crate::replay::{CableResult, ReplayResult};
 /// of \[P\] leave 5 to 20 %.
 const WORKS: f64 = 0.3;
 
+/// Remaining fraction of the error above which, on every cable, nearly all of it is something else. Like [`WORKS`] it changes only the wording.
+const HARDLY_HELPS: f64 = 0.9;
+
 /// Fraction of flagged samples above which they are mentioned.
 const MANY_FLAGGED: f64 = 0.01;
 
@@ -84,7 +87,7 @@ fn worse(all: &[Compared]) -> Option<String> {
 fn share_left(of: &str, all: &[Compared]) -> Option<String> {
     let better = all.iter().filter(|one| !one.is_worse());
     let shares: Vec<f64> = better.map(Compared::left).filter(|left| left.is_finite()).collect();
-    (!shares.is_empty()).then(|| format!("{} of {of} that friction causes", range_in_words(shares.into_iter())))
+    (!shares.is_empty()).then(|| format!("{} of {of}", range_in_words(shares.into_iter())))
 }
 
 fn wrench_left(wrench: &[Compared]) -> Option<String> {
@@ -113,6 +116,8 @@ impl ReplayResult {
             format!("{words} ({})", counted(count, "cable"))
         });
         let of_wrench = if cables.is_empty() { wrench_left(&wrench) } else { None };
+        let shown = if cables.is_empty() { &wrench } else { &cables };
+        let least = shown.iter().map(Compared::left).filter(|left| left.is_finite()).fold(1.0, f64::min);
         let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
         let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
         let left = of_cables.or(of_wrench);
@@ -121,7 +126,13 @@ impl ReplayResult {
                 (Tone::Bad, left.map_or(worse.clone(), |left| format!("{worse} Elsewhere it leaves {left}.")))
             }
             (None, Some(left)) if greatest <= WORKS => (Tone::Well, format!("Compensation works: it leaves {left}.")),
-            (None, Some(left)) => (Tone::Mixed, format!("Compensation helps in part: it leaves {left}.")),
+            (None, Some(left)) if least <= HARDLY_HELPS => {
+                (Tone::Mixed, format!("Compensation helps in part: it leaves {left}."))
+            }
+            (None, Some(left)) => (
+                Tone::Bad,
+                format!("Compensation hardly helps: it leaves {left}. Most of that is not this model's friction."),
+            ),
             (None, None) => (
                 Tone::Mixed,
                 "The forces are compensated, but how well is not known: the log has nothing to compare them with."

@@ -15,13 +15,13 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     let on = |cables: &[&str]| {
         if cables.len() == count && count > 1 { format!("all {count} cables") } else { listed(cables) }
     };
-    let mut kinds: Vec<(&str, Vec<&str>, &str)> = Vec::new();
+    let mut kinds: Vec<(&str, Vec<&str>, String)> = Vec::new();
     for cable in &result.cables {
         for effect in &cable.effects {
             match kinds.iter_mut().find(|(kind, ..)| *kind == effect.kind) {
                 Some((_, names, _)) if names.last() == Some(&cable.name.as_str()) => {}
                 Some((_, names, _)) => names.push(&cable.name),
-                None => kinds.push((effect.kind, vec![&cable.name], effect.effect.row().remedy)),
+                None => kinds.push((effect.kind, vec![&cable.name], effect.remedy())),
             }
         }
     }

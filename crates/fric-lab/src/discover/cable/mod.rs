@@ -12,7 +12,9 @@ use self::given::{given_model, has_reference};
 use crate::candidates::catalogue::around;
 use crate::discover::faults::oscillations::Oscillations;
 use crate::discover::faults::spectrum::{Times, motion_and_load};
-use crate::discover::faults::{Fault, RecordingFault, coarse_step_n, faulty_stretches, leave_out, of_stretches};
+use crate::discover::faults::{
+    CoarseSteps, Fault, RecordingFault, faulty_stretches, leave_out, of_stretches, spikes_among,
+};
 use crate::discover::naming::Named;
 use crate::discover::readiness::{lack_of, lack_of_noise, lack_of_samples};
 use crate::discover::report::CableDiscovery;
@@ -112,8 +114,10 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     }
     task.stages.finish_one();
     let references_n = heard.taken_off(record, &times);
-    faults.extend(of_stretches(&stretches, |cycle| record.time_s(cycle)));
-    let step_n = coarse_step_n(record).filter(|step_n| {
+    let mut told = [&stretches[..], &spikes_among(record, &found)].concat();
+    told.sort_by_key(|stretch| stretch.cycles.start);
+    faults.extend(of_stretches(&told, |cycle| record.time_s(cycle)));
+    let step_n = CoarseSteps::of(record).map(|coarse| coarse.step_n).filter(|step_n| {
         // Rounding noise is uniform within ± half a step.
         let rounding_n = record.params.frictionless_gain() * step_n / 12.0_f64.sqrt();
         rounding_n * rounding_n > LEAST_ROUNDING * outcome.rest.noise_n * outcome.rest.noise_n

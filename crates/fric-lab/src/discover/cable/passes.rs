@@ -13,7 +13,7 @@ use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
 use crate::discover::rest::{WORTH, wander};
 use crate::discover::workbench::{self, Trial, Workbench};
 use crate::fit::{FitOptions, HALF_INTERVAL, Parameter};
-use crate::samples::noise::white_noise;
+use crate::samples::noise::white_noise_apart;
 use crate::samples::selection::Standing;
 use crate::search::solve::contradicts;
 
@@ -134,7 +134,11 @@ impl CableLog<'_> {
     /// Returns the standard deviation of the white noise in the model's residual, N.
     pub(super) fn noise_n(&self, bench: &Workbench<'_>, model: &Trial) -> Option<f64> {
         let residual_n = bench.residuals_n(&model.values);
-        Some(white_noise(&bench.measured_of(&residual_n))?.max(self.least_n(model)))
+        Some(self.white_noise_n(bench, &residual_n)?.max(self.least_n(model)))
+    }
+
+    fn white_noise_n(&self, bench: &Workbench<'_>, residual_n: &[f64]) -> Option<f64> {
+        white_noise_apart(&bench.measured_of(residual_n), self.record.noise_reach)
     }
 
     /// Returns the force below which the model is not trusted, N.
@@ -145,7 +149,7 @@ impl CableLog<'_> {
     /// Assesses what a model leaves.
     pub(super) fn rest(&self, bench: &Workbench<'_>, model: &workbench::Model, least_n: f64) -> Option<Rest> {
         let residual_n = bench.residuals_n(&model.values);
-        let noise_n = white_noise(&bench.measured_of(&residual_n))?.max(least_n);
+        let noise_n = self.white_noise_n(bench, &residual_n)?.max(least_n);
         let excess = self.excess(&residual_n, noise_n);
         let places = excess.places(self.conditions);
         let share = excess.share();

@@ -12,7 +12,7 @@ use super::timing;
 use crate::fit::{
     CableFit, CableRecord, FitOptions, Measurements, Progress, SampleStore, StoreError, fit_cables, residuals_n,
 };
-use crate::samples::noise::white_noise;
+use crate::samples::noise::white_noise_apart;
 
 /// A fit corrects the time of a reference only if the residual after the correction is at most this multiple of the white noise. Otherwise an effect
 /// may be missing that looks like a late reference. Tuned on 24 simulated logs of others: the two logs with such a fault come to 0.99 and 0.97 of
@@ -50,7 +50,7 @@ pub fn corrections(samples: &SampleStore<'_>, progress: &Progress) -> Result<Cor
                 noise.as_ref().and_then(|noise| noise.faults.get(measurements.held().start + place)?.clone());
             let late = timing::retimed(record, progress.stop_flag());
             progress.finish_one();
-            let (references_n, late) = late.unzip();
+            let (references_n, late) = late.map(|late| (late.references_n, late.fault)).unzip();
             CableCorrection { faults: late.into_iter().chain(of_length).collect(), references_n }
         };
         cables.par_extend(records.par_iter().enumerate().map(of_cable));
@@ -127,7 +127,7 @@ fn fit_group(
     let cables = fit_cables(measurements, options, progress);
     let left_n = residuals_n(measurements, &cables);
     let stop = progress.stop_flag();
-    let retimed = |(cable, (fit, left_n)): (usize, (&CableFit, &Vec<f64>))| -> Option<(Vec<f64>, RecordingFault)> {
+    let retimed = |(cable, (fit, left_n)): (usize, (&CableFit, &Vec<f64>))| -> Option<timing::Retimed> {
         let record = measurements.cable(measurements.held().start + cable)?;
         if !timing::may_be_off(&record, left_n) {
             return None;
@@ -139,7 +139,10 @@ fn fit_group(
     if found.iter().all(Option::is_none) {
         return (CorrectedFit { faults: vec![Vec::new(); cables.len()], cables }, left_n);
     }
-    let (references_n, faults): (Vec<_>, Vec<_>) = found.into_iter().map(Option::unzip).unzip();
+    let parts = |retimed: Option<timing::Retimed>| {
+        retimed.map(|retimed| (retimed.references_n, (retimed.fault, retimed.noise_reach))).unzip()
+    };
+    let (references_n, faults): (Vec<_>, Vec<_>) = found.into_iter().map(parts).unzip();
     let corrected = measurements.with_references(references_n);
     let again = fit_cables(&corrected, options, progress);
     let mut all = (CorrectedFit::default(), Vec::new());
@@ -147,19 +150,19 @@ fn fit_group(
     let again_n = residuals_n(&corrected, &again);
     let again = again.into_iter().zip(again_n);
     for ((first, again), fault) in first.zip(again).zip(faults) {
-        let fault = fault.filter(|_| is_noise(&again.1));
+        let fault = fault.filter(|(_, noise_reach)| is_noise(&again.1, *noise_reach));
         let (fit, left_n) = if fault.is_some() { again } else { first };
         all.0.cables.push(fit);
-        all.0.faults.push(fault.into_iter().collect());
+        all.0.faults.push(fault.into_iter().map(|(fault, _)| fault).collect());
         all.1.push(left_n);
     }
     all
 }
 
-/// Whether a residual is little more than white noise.
-fn is_noise(residual_n: &[f64]) -> bool {
+/// Whether a residual is little more than white noise, which so many consecutive samples share.
+fn is_noise(residual_n: &[f64], noise_reach: usize) -> bool {
     let known = || residual_n.iter().filter(|left_n| left_n.is_finite());
     #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
     let mean_square = known().map(|left_n| left_n * left_n).sum::<f64>() / known().count() as f64;
-    white_noise(residual_n).is_some_and(|noise_n| mean_square.sqrt() <= NOTHING_LEFT_RATIO * noise_n)
+    white_noise_apart(residual_n, noise_reach).is_some_and(|noise_n| mean_square.sqrt() <= NOTHING_LEFT_RATIO * noise_n)
 }

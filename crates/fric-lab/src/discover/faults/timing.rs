@@ -62,9 +62,22 @@ struct Corrected {
     trial: Trial,
 }
 
+/// References at their correct times.
+pub struct Retimed {
+    pub references_n: Vec<f64>,
+    /// Number of consecutive samples that share noise.
+    pub noise_reach: usize,
+    /// The fault to report.
+    pub fault: RecordingFault,
+}
+
+/// Number of samples between which a line and a quadratic B-spline interpolate.
+const LINE_REACH: usize = 2;
+const SPLINE_REACH: usize = 3;
+
 /// Returns the cable's references at their correct times, and the fault to report. Returns `None` if the time is right or cannot be
 /// determined, for instance with a model without friction.
-pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<f64>, RecordingFault)> {
+pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
     // A model without friction leaves all of the friction in the residual, which has rates of its own.
     if record.reference_is_known || record.params.friction().mu <= 0.0 {
         return None;
@@ -98,12 +111,14 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<f64>,
         && is_strong(&first, &skewed, true)?
     {
         let Shift { delay_s, skew } = skewed.shift;
-        return Some((skewed.references_n, fault(Fault::ClockSkew, vec![("skew_ratio", -skew), ("delay_s", delay_s)])));
+        let fault = fault(Fault::ClockSkew, vec![("skew_ratio", -skew), ("delay_s", delay_s)]);
+        return Some(Retimed { references_n: skewed.references_n, noise_reach: SPLINE_REACH, fault });
     }
     let delay_s = late.shift.delay_s;
     let first = case.improvement(record.references_n, &as_it_is, false)?;
     let is_late = delay_s > 0.0 && gains(&as_it_is, &late.trial) && is_strong(&first, &late, false)?;
-    is_late.then(|| (late.references_n, fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)])))
+    let fault = fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)]);
+    is_late.then_some(Retimed { references_n: late.references_n, noise_reach: LINE_REACH, fault })
 }
 
 /// Whether a fit's residual, N, is correlated with the rate of the reference at all, constantly or growing with time. This check is far cheaper than
@@ -229,7 +244,9 @@ impl<'a> Case<'a> {
         })
     }
 
-    /// Returns the references interpolated linearly from later samples; NaN past the ends of each log.
+    /// Returns the references interpolated from later samples; NaN past the ends of each log. Each value gets the same part of the samples' noise: a line
+    /// does this for a delay, which falls at one place between two samples, and a quadratic B-spline nearly does for a skew, which wanders from one
+    /// sample to the next. With a line what is left would be loud wherever the skew falls on a sample.
     fn shifted(&self, shift: Shift) -> Vec<f64> {
         let mut references_n = self.record.references_n.to_vec();
         for (start, log) in self.record.logs() {
@@ -238,7 +255,6 @@ impl<'a> Case<'a> {
                 let later_s = shift.delay_s + shift.skew * seconds(&self.record, place);
                 #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
                 let at = place as f64 + later_s / self.record.interval_s;
-                let whole = at.floor();
                 #[expect(
                     clippy::cast_possible_truncation,
                     clippy::cast_sign_loss,
@@ -248,11 +264,42 @@ impl<'a> Case<'a> {
                     let given_n = if place < 0.0 { None } else { given_n.get(place as usize) };
                     given_n.copied().unwrap_or(f64::NAN)
                 };
-                let share = at - whole;
-                let [before, after] = [whole, whole + 1.0].map(given_n);
-                *reference_n = if share > 0.0 { before + share * (after - before) } else { before };
+                *reference_n = if shift.skew == 0.0 { on_line(at, given_n) } else { on_spline(at, given_n) };
             }
         }
         references_n
+    }
+}
+
+/// Interpolates linearly at a place between samples.
+fn on_line(at: f64, given_n: impl Fn(f64) -> f64) -> f64 {
+    let whole = at.floor();
+    let share = at - whole;
+    let before = given_n(whole);
+    if share > 0.0 { before + share * (given_n(whole + 1.0) - before) } else { before }
+}
+
+/// Weighs three samples by a quadratic B-spline around a place between samples. It leaves 0.50 to 0.59 of the variance of white noise.
+fn on_spline(at: f64, given_n: impl Fn(f64) -> f64) -> f64 {
+    let nearest = at.round();
+    let off = at - nearest;
+    let weights = [0.5 * (0.5 - off).powi(2), 0.75 - off * off, 0.5 * (0.5 + off).powi(2)];
+    [-1.0, 0.0, 1.0].into_iter().zip(weights).map(|(step, weight)| weight * given_n(nearest + step)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spline_keeps_lines_and_leaves_alike_much_noise_everywhere() {
+        for percent in 0..200_i32 {
+            let at = 10.0 + f64::from(percent) / 100.0;
+            assert!((on_spline(at, |place| 3.0 - 0.7 * place) - (3.0 - 0.7 * at)).abs() < 1e-12);
+            // The response to a single sample is its weight.
+            let weight = |of: f64| on_spline(at, |place| if place.to_bits() == of.to_bits() { 1.0 } else { 0.0 });
+            let variance: f64 = (8..14).map(|place| weight(f64::from(place)).powi(2)).sum();
+            assert!((0.5..0.595).contains(&variance), "{variance} at {at}");
+        }
     }
 }

@@ -7,6 +7,7 @@ use super::{LEAST_GAIN, LEAST_SIZE, Search, Set, set_of, without};
 use crate::candidates::catalogue::{fitted, has, starts};
 use crate::candidates::ripple::{period_of, periods};
 use crate::discover::workbench::{Model, NEAR_ERRORS, Trial};
+use crate::effects::pulley_defect;
 use crate::fit::Parameter;
 
 /// No friction equation is trusted to better than this fraction of the force that it adds. Otherwise the model error of a strong effect would be
@@ -66,7 +67,7 @@ impl Search<'_, '_> {
             };
             for values in starts {
                 models.push(Model { values, free: free.clone() });
-                owners.push(with(&effect));
+                owners.push((with(&effect), effect));
             }
         }
         #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
@@ -77,10 +78,11 @@ impl Search<'_, '_> {
         self.effort.add(&fits);
         // Where every start leads away, the effect is best left out.
         let left_out = |model_with: Model| Trial { free: model_with.free, ..model.clone() };
-        let left_out: Vec<(Set, Trial)> = owners.iter().cloned().zip(models.into_iter().map(left_out)).collect();
-        for (owner, trial) in owners.into_iter().zip(fits).chain(left_out) {
+        let left_out: Vec<_> = owners.iter().cloned().zip(models.into_iter().map(left_out)).collect();
+        for ((owner, effect), trial) in owners.into_iter().zip(fits).chain(left_out) {
             let is_better = self.fits.get(&owner).is_none_or(|other| trial.training < other.training);
             if trial.training.is_finite() && is_better {
+                let trial = self.upright(effect, trial);
                 self.fits.insert(owner, trial);
             }
         }
@@ -120,7 +122,7 @@ impl Search<'_, '_> {
             self.effort.add(&fits);
             let best = fits.into_iter().min_by(|one, other| one.training.total_cmp(&other.training));
             if let Some(best) = best.filter(|best| best.training < trial.training) {
-                self.fits.insert(set_of(found), best);
+                self.fits.insert(set_of(found), self.upright(effect, best));
             }
         }
     }
@@ -175,6 +177,20 @@ impl Search<'_, '_> {
     /// Returns the held-out mean square above the noise, as a fraction of the noise variance.
     pub(super) fn excess(&self, trial: &Trial) -> f64 {
         trial.held_out / self.noise_squares - 1.0
+    }
+
+    /// Returns the fit with the pulley that rubs too much. Of two pulleys, this is the same model as the other one that rubs too little, in which a search
+    /// may end.
+    fn upright(&self, effect: Effect, trial: Trial) -> Trial {
+        let other_way = if effect == Effect::PulleyDefect {
+            pulley_defect::other_way(&trial.values, self.around.pulley_count)
+        } else {
+            None
+        };
+        let Some(values) = other_way else { return trial };
+        let model = Model { values, free: trial.free.clone() };
+        let turned = self.bench.try_all(&[model], trial.near_errors).pop();
+        turned.filter(|turned| turned.training < trial.training + self.noise_n * self.noise_n).unwrap_or(trial)
     }
 
     /// Returns the decrease of the held-out sum of squares that a candidate needs to enter beside a model, N².

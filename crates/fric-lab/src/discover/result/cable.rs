@@ -1,6 +1,6 @@
 //! The findings on one cable.
 
-use fric_core::parameters::NO_PRESLIDING_N_PER_M;
+use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, VISCOUS};
 use serde::Serialize;
 
 use super::effect::{Candidate, EffectResult, TriedResult, effect_result, errors};
@@ -13,6 +13,7 @@ use crate::discover::rest::empirical;
 use crate::errors::ForceError;
 use crate::fit::Parameter;
 use crate::fit::result::{LeftOut, LogValues, Numbers};
+use crate::search::vector::Coordinate;
 
 /// One cable, or the tendon of a manipulator.
 #[derive(Clone, Debug, Serialize)]
@@ -78,6 +79,9 @@ pub struct DiscoverCableResult<M: Machine = Robot> {
     /// Standard errors of the fitted values.
     #[serde(skip_serializing_if = "is_absent")]
     pub standard_errors: M::OfRobots<Numbers>,
+    /// Friction parameters at the greatest value of their range, which the log would have beyond it; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at_bound: Vec<String>,
     /// What each log has of its own, in the order of the logs; absent if they share all parameters. `parameters` has the value of the last log.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub per_log: Vec<LogValues>,
@@ -158,6 +162,7 @@ pub fn cable_result(
         kept: None,
         parameters: parameters(found),
         standard_errors: errors(found, Parameter::all(), ToString::to_string),
+        at_bound: at_bound(&found.after),
         per_log: LogValues::of_logs(&found.per_log, logs),
         faults: found.faults.iter().map(FaultResult::of).collect(),
         unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, names)),
@@ -175,6 +180,17 @@ pub fn gap_closed(found: &CableDiscovery, rms_n: f64) -> Option<f64> {
 /// Returns the mean square above the noise, N².
 fn excess(model: &Model, noise_n: f64) -> f64 {
     model.held_out_n.rms().map_or(f64::NAN, |rms_n| rms_n * rms_n - noise_n * noise_n)
+}
+
+/// Returns the friction parameters at the greatest value of their range. At the least, nothing rubs.
+fn at_bound(model: &Model) -> Vec<String> {
+    let rubs = |parameter: &&Parameter| [MU, VISCOUS].contains(&parameter.place());
+    let is_at_bound = |parameter: &&Parameter| {
+        // The range of friction does not depend on the cycle time.
+        let coordinate = Coordinate::of(parameter, 1.0);
+        coordinate.bound_at(model.values[parameter.place()], 0.0) == Some(coordinate.range().1)
+    };
+    model.fitted.iter().filter(rubs).filter(is_at_bound).map(ToString::to_string).collect()
 }
 
 /// Returns the values of the extended model: friction, fitted parameters, and all parameters of each effect found.

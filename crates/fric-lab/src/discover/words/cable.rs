@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use fric_core::effects::Effect;
 
 use super::{condition, intervals, newtons, percent};
+use crate::discover::faults::Fault;
 use crate::discover::rest::places::LEAST_CONCENTRATION;
 use crate::discover::result::{DiscoverCableResult, UnexplainedResult, WhereResult};
 use crate::text::{listed, quantity, significant};
@@ -98,6 +99,30 @@ fn names(kinds: &[&str]) -> String {
 }
 
 impl DiscoverCableResult {
+    /// Returns which friction parameters are at the end of their range, as a sentence without its full stop; `None` if none is.
+    #[must_use]
+    pub fn bound_in_words(&self) -> Option<String> {
+        let value = |name: &String| self.parameters.get(name).map(|value| format!("{name} = {}", significant(value)));
+        let values: Vec<String> = self.at_bound.iter().filter_map(value).collect();
+        (!values.is_empty()).then(|| {
+            let values = listed(&values);
+            format!("{values} is the end of the range; no pulley rubs so much: compare units, zero and pulleys")
+        })
+    }
+
+    /// Returns how many samples were left out because each is off by itself, as a sentence without its full stop; `None` if none was, or if spikes of
+    /// the sensor are told.
+    #[must_use]
+    pub fn outliers_in_words(&self) -> Option<String> {
+        let has_spikes = self.faults.iter().any(|fault| fault.fault == Fault::Spikes);
+        match self.left_out.outliers {
+            _ if has_spikes => None,
+            0 => None,
+            1 => Some("1 sample is left out because it is off by itself, as a spike is".to_owned()),
+            count => Some(format!("{count} samples are left out because each is off by itself, as spikes are")),
+        }
+    }
+
     /// Returns the verdict on the cable in sentences.
     #[must_use]
     pub fn verdict_in_words(&self) -> String {

@@ -8,6 +8,7 @@ use crate::discover::result::{
     CommonEffect, CommonParameter, EffectResult, Evidence, RunnerUpResult, TablePoint, TableResult, TriedResult,
 };
 use crate::fit::HALF_INTERVAL;
+use crate::scale;
 use crate::text::{listed, quantity};
 
 impl EffectResult {
@@ -24,6 +25,17 @@ impl EffectResult {
         };
         let all: Vec<String> = self.effect.row().parameters.iter().filter_map(one).collect();
         all.join(", ")
+    }
+
+    /// Returns what to do on the machine, as a clause.
+    #[must_use]
+    pub fn remedy(&self) -> String {
+        let remedy = self.effect.row().remedy;
+        let gain = self.parameters.get("gain").filter(|_| self.effect == Effect::SensorGain);
+        gain.and_then(scale::cause_of_gain).map_or_else(
+            || remedy.to_owned(),
+            |cause| format!("the likely cause of such a gain is {cause}; otherwise {remedy}"),
+        )
     }
 
     /// Returns the alternative explanation, as a sentence without its full stop.

@@ -72,11 +72,18 @@ pub fn interval([from_s, to_s]: &[f64; 2]) -> String {
     if from == to { from } else { format!("{from}…{to}") }
 }
 
+/// Maximum number of intervals to list.
+const MOST_INTERVALS: usize = 12;
+
 /// Formats time intervals.
 #[must_use]
 pub fn intervals(intervals_s: &[[f64; 2]]) -> String {
-    let all: Vec<String> = intervals_s.iter().map(interval).collect();
-    format!("{} s", all.join(", "))
+    let shown: Vec<String> = intervals_s.iter().take(MOST_INTERVALS).map(interval).collect();
+    let shown = shown.join(", ");
+    match intervals_s.len().saturating_sub(MOST_INTERVALS) {
+        0 => format!("{shown} s"),
+        more => format!("{shown} s and {more} more"),
+    }
 }
 
 /// Returns a condition's name in words.

@@ -142,6 +142,7 @@ impl Cable {
             reference_is_known: self.reference_is_known,
             length_play_m: 0.0,
             per_log: None,
+            noise_reach: 1,
             added_noise: None,
         }
     }

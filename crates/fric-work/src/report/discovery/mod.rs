@@ -116,6 +116,8 @@ fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, foun
             h3 { "Faults of the recording" }
             ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
         }
+        @if let Some(bound) = cable.bound_in_words() { p.soft { (bound) "." } }
+        @if let Some(outliers) = cable.outliers_in_words() { p.soft { (outliers) "." } }
         @if let Some(rest) = &cable.unexplained {
             h3 { "Unexplained" }
             ul { @for sentence in rest.in_words() { li { (sentence) } } }
@@ -148,7 +150,7 @@ fn effect_in_words(effect: &EffectResult) -> Markup {
         dl {
             dt { "values" } dd { (effect.values_in_words()) " (95 %)" }
             dt { "cause" } dd { (effect.effect.row().cause) }
-            dt { "remedy" } dd { (effect.effect.row().remedy) }
+            dt { "remedy" } dd { (effect.remedy()) }
             @if let Some(alternative) = effect.alternative_in_words() { dt { "else" } dd { (alternative) } }
         }
         @if let Some(table) = &effect.table {
