@@ -224,6 +224,15 @@ fn times_in_another_unit_are_told() {
         assert!(draft.contains(note) && draft.contains("factor = 0.001") == factor, "{run:#?} {draft}");
         assert!(draft.contains(if factor { "cycle_s = 0.004 " } else { "cycle_s = 4.0 " }), "{draft}");
     }
+    place.write("run.csv", table(0.0, 4000.0, 200));
+    place.run(&["init", "run.csv", "-o", "draft.toml", "--force"]).succeeds();
+    let draft = String::from_utf8(place.read("draft.toml")).unwrap();
+    assert!(draft.contains("factor = 1e-6") && draft.contains("cycle_s = 0.004 "), "{draft}");
+    // Seconds since 1970 of a slow log.
+    place.write("run.csv", table(1.78e9, 0.5, 200).replacen("time_s", "t", 1));
+    place.run(&["init", "run.csv", "-o", "draft.toml", "--force"]).succeeds();
+    let draft = String::from_utf8(place.read("draft.toml")).unwrap();
+    assert!(draft.contains("cycle_s = 0.5 ") && !draft.contains("factor"), "{draft}");
     place.write("run.csv", table(0.0, 4.0, 200).replacen("time_s", "t", 1));
     place.run(&["init", "run.csv", "-o", "draft.toml", "--force"]).succeeds();
     let draft = String::from_utf8(place.read("draft.toml")).unwrap();

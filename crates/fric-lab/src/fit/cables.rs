@@ -1,7 +1,7 @@
 //! Identification of each cable separately, from the force measured at its platform end (\[P\] 18).
 
 use fric_core::LANES;
-use fric_core::parameters::{MU, SIGMA, Values};
+use fric_core::parameters::{MU, OFFSET, SIGMA, Values};
 use std::panic::resume_unwind;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -18,6 +18,7 @@ use crate::samples::interpolated::measured;
 use crate::samples::record::{LogZero, Measurements, PerLog};
 use crate::samples::selection;
 use crate::samples::selection::Standing;
+use crate::scale::Scale;
 use crate::search::gang::{Gang, Seat};
 use crate::search::pass::Forces;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
@@ -266,9 +267,9 @@ pub(crate) fn cable_fits(
                 covariance: solution.covariance.select_rows(&places).select_columns(&places),
                 termination: solution.termination,
                 evaluation_count: solution.evaluation_count,
-                errors: forces
-                    .get(member)
-                    .map_or_else(ForceErrors::default, |forces| force_errors(&of.record, forces, shifts_n.as_deref())),
+                errors: forces.get(member).map_or_else(ForceErrors::default, |forces| {
+                    force_errors(&of.record, forces, values[OFFSET], shifts_n.as_deref())
+                }),
             }
         })
         .collect()
@@ -302,16 +303,23 @@ pub fn residuals_n(measurements: &Measurements<'_>, fits: &[CableFit]) -> Vec<Ve
 
 /// Returns the errors of the force at the platform without and with compensation, over every sample that has a reference, including flagged ones, as
 /// in a replay.
-fn force_errors(record: &CableRecord<'_>, forces: &Forces, zero_shifts_n: Option<&[f64]>) -> ForceErrors {
-    let mut errors = ForceErrors { before_n: frictionless_errors(record), ..ForceErrors::default() };
+fn force_errors(
+    record: &CableRecord<'_>,
+    forces: &Forces,
+    offset_n: f64,
+    zero_shifts_n: Option<&[f64]>,
+) -> ForceErrors {
     let gain = record.params.frictionless_gain();
+    let before_n = frictionless_errors(record);
+    let mut errors = ForceErrors { before_n, scale: Scale::new(gain), ..ForceErrors::default() };
     for (cycle, reference_n) in record.references_n.iter().enumerate().filter(|(_, known)| known.is_finite()) {
         errors.reference_n.add(*reference_n);
         let shift_n = zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied();
         let force_n = forces.at(cycle).0 + shift_n.unwrap_or(0.0);
         errors.after_n.add(force_n - reference_n);
         let shown_n = record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n * gain);
-        errors.scale.add(*reference_n, [shown_n, force_n]);
+        // A fitted zero at the platform would hide the scale of a load that does not vary.
+        errors.scale.add(*reference_n, [shown_n, force_n - offset_n]);
     }
     errors
 }

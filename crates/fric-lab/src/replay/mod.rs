@@ -11,7 +11,7 @@ mod warnings;
 
 use std::collections::VecDeque;
 
-use fric_core::{AnyCompensator, CableOutput, CableStatus, ParamError, Pose, RobotParams, Sample, Wrench};
+use fric_core::{AnyCompensator, CableOutput, CableParams, CableStatus, ParamError, Pose, RobotParams, Sample, Wrench};
 
 use crate::clock::Clock;
 use crate::scale::Scale;
@@ -36,6 +36,12 @@ pub struct CableErrors {
     pub before_n: Deviation,
     /// Compensated force minus reference, N.
     pub after_n: Deviation,
+}
+
+impl CableErrors {
+    fn new(cable: &CableParams) -> Self {
+        Self { scale: Scale::new(cable.frictionless_gain()), ..Self::default() }
+    }
 }
 
 /// The accumulated errors of the wrench.
@@ -154,7 +160,7 @@ impl Replay {
     pub fn new(robot: &RobotParams<'_>) -> Result<Self, ParamError> {
         Ok(Self {
             compensator: AnyCompensator::new(robot)?,
-            cables: vec![CableErrors::default(); robot.cables().len()],
+            cables: robot.cables().iter().map(CableErrors::new).collect(),
             wrench_before: WrenchErrors::default(),
             wrench_after: WrenchErrors::default(),
             by_mass: ByMass::new(robot),

@@ -4,6 +4,7 @@ mod columns;
 mod draft;
 mod topics;
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use fric_core::robot::file::RobotFile;
@@ -16,6 +17,11 @@ use crate::arguments::InitArguments;
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, Written};
 use draft::Draft;
+
+/// Greatest cycle time of a robot file, s.
+const GREATEST_CYCLE_S: f64 = 10.0;
+/// Times from 2001 to 2100, counted from 1970, s.
+const SECONDS_SINCE_1970: Range<f64> = 1e9..4.1e9;
 
 /// Number of samples that suffices to determine their interval.
 const MOST_ROWS: usize = 2000;
@@ -50,37 +56,51 @@ fn parsed(text: &str) -> Outcome<RobotFile> {
     })
 }
 
-/// Finds the interval of the samples. Times of a CSV log that cannot be seconds get the factor of a smaller unit; of slow ones whose column states
-/// seconds only a note tells.
+/// Finds the interval of the samples. Times of a CSV log that are likely no seconds get the factor of a smaller unit; of slow ones that are stated to be
+/// seconds, or count them since 1970, only a note tells.
 fn find_interval(logs: &[PathBuf], draft: &mut Draft, has_columns: bool) -> Outcome {
-    let is_usual = |interval_s: &f64| *interval_s < GREAT_INTERVAL_S;
-    let interval_of = |draft: &Draft| Outcome::Ok(interval_s(Log::open(logs)?, &parsed(&draft.text())?));
-    let mut interval_s = interval_of(draft)?;
-    let is_slow = interval_s.is_some_and(|interval_s| !is_usual(&interval_s));
-    if is_slow && draft.time_states_its_unit() {
-        draft
-            .notes
-            .push("time_s: the samples are slow for a recording of forces; is the time in milliseconds?".to_owned());
-    } else if has_columns && (is_slow || interval_s.is_none()) {
+    let is_usual = |times: &Times| times.interval_s < GREAT_INTERVAL_S;
+    let times_of = |draft: &Draft| Outcome::Ok(Times::of(Log::open(logs)?, &parsed(&draft.text())?));
+    let mut times = times_of(draft)?.filter(|times| times.interval_s < GREATEST_CYCLE_S);
+    if let Some(slow) = times.as_ref().filter(|times| !is_usual(times))
+        && (draft.time_states_its_unit() || SECONDS_SINCE_1970.contains(&slow.start_s))
+    {
+        let note = "time_s: the samples are slow for a recording of forces; is the time in milliseconds?";
+        draft.notes.push(note.to_owned());
+    } else if has_columns && !times.as_ref().is_some_and(is_usual) {
         for factor in [1e-3, 1e-6, 1e-9] {
             let scaled = draft.with_time_factor(factor);
-            if let Some(interval) = interval_of(&scaled)?.filter(is_usual) {
-                (*draft, interval_s) = (scaled, Some(interval));
+            if let Some(found) = times_of(&scaled)?.filter(is_usual) {
+                (*draft, times) = (scaled, Some(found));
                 break;
             }
         }
     }
-    draft.set_interval_s(interval_s);
+    draft.set_interval_s(times.map(|times| times.interval_s));
     Ok(())
 }
 
-/// Returns the usual interval of the samples; `None` if there are none.
-fn interval_s(log: Log, robot: &RobotFile) -> Option<f64> {
-    let paths = SignalPaths::of_robot(robot).ok()?;
-    let mut reader = SignalReader::new(log, paths, &robot.cable_names());
-    let mut count = 0;
-    while count < MOST_ROWS && matches!(reader.next_row(), Ok(Some(_))) {
-        count += 1;
+/// The times of a log's samples.
+struct Times {
+    /// Time of the first one, s.
+    start_s: f64,
+    /// Usual interval, s.
+    interval_s: f64,
+}
+
+impl Times {
+    /// Reads the beginning of a log; `None` if it has no two samples.
+    fn of(log: Log, robot: &RobotFile) -> Option<Self> {
+        let paths = SignalPaths::of_robot(robot).ok()?;
+        let mut reader = SignalReader::new(log, paths, &robot.cable_names());
+        let mut start_nanos = None;
+        for _ in 0..MOST_ROWS {
+            let Ok(Some(row)) = reader.next_row() else { break };
+            start_nanos.get_or_insert(row.stamp_nanos);
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a time for comparison")]
+        let start_s = start_nanos? as f64 * 1e-9;
+        let interval_s = reader.counts(Role::Cable).interval_nanos * 1e-9;
+        (interval_s > 0.0).then_some(Self { start_s, interval_s })
     }
-    Some(reader.counts(Role::Cable).interval_nanos * 1e-9).filter(|interval_s| *interval_s > 0.0)
 }

@@ -120,17 +120,22 @@ pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
     merged(stretches, record.interval_s)
 }
 
-/// Returns the spikes among the samples that a fit leaves out because each is off by itself: those in which the sensor's force is off too. They may be
-/// far smaller than the friction, which the model knows.
+/// Returns the spikes among the samples that a fit leaves out because each is off by itself: those in which the sensor's force is off by itself too, more
+/// than the reference. They may be far smaller than the friction, which the model knows.
 pub fn spikes_among(record: &CableRecord<'_>, standings: &[Standing]) -> Vec<FaultyStretch> {
     if !standings.contains(&Standing::Outlier) {
         return Vec::new();
     }
-    let shown = shown_forces_n(record);
-    let (jumps, usual_n) = jumps(&shown);
+    let (of_sensor, usual_n) = jumps(&shown_forces_n(record));
+    let (of_reference, usual_reference_n) = jumps(record.references_n);
     let is_outlier = |place: usize| standings.get(place) == Some(&Standing::Outlier);
-    let is_spike = |(place, jump): &(usize, Jump)| is_outlier(*place) && jump.off_n > OUTLIER_RATIO * usual_n;
-    let alone = jumps.into_iter().enumerate().filter(is_spike);
+    let is_spike = |(place, (sensor, reference)): &(usize, (&Jump, &Jump))| {
+        let [sensor_ratio, reference_ratio] = [sensor.off_n / usual_n, reference.off_n / usual_reference_n];
+        // A spike of the reference may stand where friction turns.
+        let is_of_sensor = sensor.is_alone && (reference_ratio.is_nan() || reference_ratio <= sensor_ratio);
+        is_outlier(*place) && is_of_sensor && sensor_ratio > OUTLIER_RATIO
+    };
+    let alone = of_sensor.iter().zip(&of_reference).enumerate().filter(is_spike);
     alone.map(|(place, _)| FaultyStretch { fault: Fault::Spikes, cycles: place..place + 1 }).collect()
 }
 
