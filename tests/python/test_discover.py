@@ -46,9 +46,10 @@ def told(cable):
     attributes = {name: getattr(cable, name) for name in dir(cable) if not name.startswith("_")}
     for name in ("time_s", "residual_before_n", "residual_after_n", "where_in_words"):
         del attributes[name]
-    # The key is absent where the logs share all values.
-    if not attributes["per_log"]:
-        del attributes["per_log"]
+    # These keys are absent where the logs share all values, and where nothing is at the end of its range.
+    for name in ("per_log", "at_bound"):
+        if not attributes[name]:
+            del attributes[name]
     for name in ("before", "after"):
         error = attributes[name]
         attributes[name] = error and {"rms_n": error.rms_n, "mae_n": error.mae_n}

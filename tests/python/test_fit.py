@@ -109,7 +109,7 @@ def test_each_log_has_its_own_zero():
     assert np.sqrt(np.nanmean(winch.residuals_n**2)) == pytest.approx(winch.after.rms_n, rel=1e-9)
     for given, per_log, words in (
         (logs, ["mu"], "`per_log`: `mu` has one value for all logs"),
-        (logs, ["offset"], "did you mean `offset_n`"),
+        (logs, ["offset"], "there is no parameter `offset` that each log may have of its own"),
         (logs[0], ["offset_n"], "there is one"),
     ):
         with pytest.raises(fric.ConfigError, match=words):
