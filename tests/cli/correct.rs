@@ -112,15 +112,18 @@ fn a_fit_corrects_by_itself_and_says_so() {
     };
     let (run, clean) = fit(clean());
     assert!(!run.stdout.contains("recording") && cables(&clean).iter().all(|cable| cable.get("faults").is_none()));
-    let (run, late) = fit(&restamped(|nanos| nanos + 20_000_000));
-    assert!(run.stdout.contains("recording: the reference comes late by"), "{run:#?}");
-    for (clean, late) in cables(&clean).iter().zip(cables(&late)) {
-        let delay_s = fault(late, "reference_delay")["delay_s"].as_f64().unwrap();
-        assert!((delay_s / 20e-3 - 1.0).abs() < 0.05, "{late}");
-        for (key, ratio) in [("mu", 0.01), ("sigma_n_per_m", 0.05)] {
-            let [clean, late] = [clean, late].map(|cable| cable["parameters"][key].as_f64().unwrap());
-            assert!((late / clean - 1.0).abs() < ratio, "{key}: {late} {clean}");
+    // Friction fitted to a reference that is 120 ms late is far off.
+    for late_ms in [20_u32, 120] {
+        let (run, late) = fit(&restamped(|nanos| nanos + u64::from(late_ms) * 1_000_000));
+        assert!(run.stdout.contains("recording: the reference comes late by"), "{run:#?}");
+        for (clean, late) in cables(&clean).iter().zip(cables(&late)) {
+            let delay_s = fault(late, "reference_delay")["delay_s"].as_f64().unwrap();
+            assert!((delay_s * 1e3 / f64::from(late_ms) - 1.0).abs() < 0.05, "{late}");
+            for (key, ratio) in [("mu", 0.01), ("sigma_n_per_m", 0.05)] {
+                let [clean, late] = [clean, late].map(|cable| cable["parameters"][key].as_f64().unwrap());
+                assert!((late / clean - 1.0).abs() < ratio, "{key}: {late} {clean}");
+            }
+            assert!(after_n(late) < 1.05 * after_n(clean), "{late} {clean}");
         }
-        assert!(after_n(late) < 1.05 * after_n(clean), "{late} {clean}");
     }
 }

@@ -197,6 +197,34 @@ fn what_is_missing_in_a_table_is_told_in_a_sentence() {
         .fails(1, &["`run.csv` is CSV and `log.mcap` is not"]);
 }
 
+#[test]
+fn a_force_of_the_other_sign_is_told() {
+    let place = Place::with_log();
+    let plain = Rows::of(short_log()).plain();
+    let mut lines = plain.lines();
+    let header = lines.next().unwrap();
+    let forces: Vec<bool> = header.split(',').map(|name| name.ends_with(".force_n")).collect();
+    let turned = |line: &str| -> String {
+        let cells = line.split(',').zip(&forces);
+        cells
+            .map(|(cell, is_force)| if *is_force { format!("-{cell}") } else { cell.to_owned() })
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    let text = [header.to_owned()].into_iter().chain(lines.map(turned)).collect::<Vec<String>>().join("\n");
+    place.write("run.csv", text + "\n");
+    let run = place.run(&["replay", "run.csv", "--model", "robot.toml"]);
+    let told = unwrapped(&run.stderr);
+    assert!(
+        told.contains("most samples have a force below 0 by the sensor of") && told.contains("factor = -1"),
+        "{told}"
+    );
+    for command in [&["fit", "-o", "f.toml"][..], &["discover"]] {
+        let arguments = [command, &["run.csv", "--model", "robot.toml"]].concat();
+        place.run_in_vain(&arguments).fails(1, &["most samples have a force below 0"]).advises(&["factor = -1"]);
+    }
+}
+
 /// Times that are no seconds make speeds, and with them viscous friction, a thousand times too small.
 #[test]
 fn times_in_another_unit_are_told() {

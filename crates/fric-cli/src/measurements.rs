@@ -96,6 +96,7 @@ pub fn read<'a>(logs: &[PathBuf], part: Part, model: &'a Model, reference: Refer
             warn(&format!("`{log}` has nothing to compare with on the signal `{key}`"));
         }
     }
+    warn_all(&samples.warnings(&names)?);
     let holdings = all.unwrap_or_else(|| Holdings::new(names.len()));
     Ok(LogsRead { samples, holdings, apart })
 }

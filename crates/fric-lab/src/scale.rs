@@ -43,7 +43,7 @@ pub(crate) fn cause_of_gain(gain: f64) -> Option<&'static str> {
 
 fn cause(ratio: f64, most_off: f64) -> Option<&'static str> {
     if (ratio + 1.0).abs() < most_off {
-        return Some("a reference of the other sign; tension is positive");
+        return Some("a sensor or reference of the other sign; tension is positive");
     }
     nearest(&CAUSES, ratio, most_off)
 }
@@ -105,7 +105,10 @@ impl Scale {
         if !self.varies() {
             return is_beyond_friction(corrected.sum / self.reference.sum).then_some(of_means);
         }
-        self.slope(corrected)?;
+        // A fit may bend the force of a wrong scale in any way, but only the right scale brings both slopes near 1.
+        if !self.slopes(corrected).into_iter().any(is_beyond_friction) {
+            return None;
+        }
         let slope = self.slope(shown)?;
         (MOST_APART.recip()..MOST_APART).contains(&(slope / of_means)).then_some(of_means)
     }
@@ -124,10 +127,15 @@ impl Scale {
         products / self.count - (one / self.count) * (other / self.count)
     }
 
+    /// Returns the slope of a force over the reference, by least squares of either.
+    fn slopes(&self, force: &Sums) -> [f64; 2] {
+        let covariance = self.centred(force.products, force.sum, self.reference.sum);
+        [covariance / self.variance(), self.centred(force.squares, force.sum, force.sum) / covariance]
+    }
+
     /// Returns the slope of a force over the reference; `None` if it may be that of the same scale.
     fn slope(&self, force: &Sums) -> Option<f64> {
-        let covariance = self.centred(force.products, force.sum, self.reference.sum);
-        let slopes = [covariance / self.variance(), self.centred(force.squares, force.sum, force.sum) / covariance];
+        let slopes = self.slopes(force);
         let is_alike = slopes.map(|slope| slope > 1.0) == [slopes[0] > 1.0; 2];
         let are_beyond = slopes.iter().all(|slope| is_beyond_friction(*slope)) && is_alike;
         are_beyond.then(|| slopes[0].signum() * (slopes[0] * slopes[1]).sqrt())
@@ -250,6 +258,10 @@ mod tests {
         // The zero of a fitted model changes no slope.
         let found = scale(double, |force_n| 2.0 * force_n - 10.0, VARIED, 0.02).ratio().unwrap();
         assert!((found / 2.0 - 1.0).abs() < 0.1, "{found}");
+        // A fit to kilonewtons may have friction that makes up for a part of it.
+        let bent = |force_n: f64| 1e-3 * force_n + 0.5 + 0.4 * (7.0 * force_n).sin();
+        let found = scale(|force_n| 1e-3 * force_n, bent, VARIED, 0.02).ratio().unwrap();
+        assert!((found / 1e-3 - 1.0).abs() < 0.1, "{found}");
         let kilograms = |force_n: f64| force_n / 9.80665;
         let two = ["a", "b"].map(|name| (name, scale(double, double, VARIED, 0.08)));
         let told = warnings(

@@ -51,6 +51,12 @@ impl Knowledge {
         Self { unknowns, normal, covariance, vagueness }
     }
 
+    /// Whether the interval of a parameter reaches so far from its value.
+    fn reaches(&self, unknown: &Unknown, off: f64) -> bool {
+        let place = self.unknowns.iter().position(|other| other == unknown);
+        place.is_some_and(|place| off.abs() < HALF_INTERVAL * self.covariance[(place, place)].sqrt())
+    }
+
     /// Returns the open directions. Each parameter is scaled so that its own interval is as wide as its vagueness.
     fn directions(&self) -> Vec<OpenDirection> {
         let count = self.unknowns.len();
@@ -140,7 +146,7 @@ impl Solution {
     }
 
     /// Holds the undetermined parameters one after the other. A parameter whose given value contradicts the samples keeps its estimate, because the
-    /// samples know that much.
+    /// samples know that much; but not one that the search drove along the open direction to a bound, with the given value within its interval.
     pub(crate) fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
         let mut kept = Vec::new();
         let mut least = None;
@@ -149,6 +155,13 @@ impl Solution {
             let stopped = self.termination == Termination::Stopped;
             self.settle_at_bounds(&knowledge, cycle_s);
             let next = knowledge.to_hold(&kept).filter(|_| !stopped);
+            let off = |held: &Unknown| {
+                let value =
+                    |of: &[Values]| of.get(held.member).map_or(f64::NAN, |values| values[held.parameter.place()]);
+                value(given) - value(&self.values)
+            };
+            let stays_open = |held: &Unknown| self.at_bound.contains(held) && knowledge.reaches(held, off(held));
+            let stays_open = next.as_ref().is_some_and(|(held, _)| stays_open(held));
             (self.covariance, self.unknowns) = (knowledge.covariance, knowledge.unknowns);
             let Some((held, combination)) = next else { return };
             let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
@@ -156,7 +169,7 @@ impl Solution {
             let bound = *least.get_or_insert_with(|| squares(problem, &self.values)) * (1.0 + CONTRADICTION_RATIO);
             hold(problem, held, &mut self.values, given);
             self.search_on(problem, cycle_s);
-            if squares(problem, &self.values) > bound {
+            if squares(problem, &self.values) > bound && !stays_open {
                 (problem.members, self.values, self.termination) = (members, found, termination);
                 kept.push(held);
             } else {

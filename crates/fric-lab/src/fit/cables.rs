@@ -206,8 +206,8 @@ pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |cycle| record.reference_n(cycle).is_finite());
     if !record.reference_is_known {
         selection::leave_out_still_references(record, &mut standings);
-        selection::leave_out_interpolated(&measured(record), &mut standings);
     }
+    selection::leave_out_interpolated(&measured(record), &mut standings);
     standings
 }
 

@@ -8,6 +8,11 @@ use super::error::FitError;
 use crate::discover::readiness::too_short;
 use crate::samples::record::Reference;
 
+/// What a force sensor of the other sign shows, and what to do.
+pub(crate) const NEGATIVE_FORCE: &str = "most samples have a force below 0 by the sensor";
+pub(crate) const NEGATIVE_ADVICE: &str =
+    "Tension is positive: tare the sensor, or turn its sign, that of a column by `factor = -1` under `[log.columns]`.";
+
 /// Counts of the rows of one or several logs that have each signal.
 #[derive(Clone, Debug)]
 pub struct Holdings {
@@ -30,6 +35,8 @@ pub struct Holdings {
 #[derive(Clone, Copy, Debug, Default)]
 struct CableHoldings {
     signalled: u64,
+    /// Of these, those with a sensor force below 0.
+    negative: u64,
     referenced: u64,
 }
 
@@ -68,7 +75,9 @@ impl Holdings {
         }
         for (holdings, (input, reference_n)) in self.cables.iter_mut().zip(row.cables.iter().zip(row.reference_force_n))
         {
-            holdings.signalled += u64::from(input.sensor_force_n.is_finite() && input.length_m.is_finite());
+            let is_signalled = input.sensor_force_n.is_finite() && input.length_m.is_finite();
+            holdings.signalled += u64::from(is_signalled);
+            holdings.negative += u64::from(is_signalled && input.sensor_force_n < 0.0);
             holdings.referenced += u64::from(reference_n.is_finite());
         }
     }
@@ -82,6 +91,7 @@ impl Holdings {
         self.intervals_s += other.intervals_s;
         for (cable, other) in self.cables.iter_mut().zip(&other.cables) {
             cable.signalled += other.signalled;
+            cable.negative += other.negative;
             cable.referenced += other.referenced;
         }
     }
@@ -366,19 +376,25 @@ pub fn geometry(robot: &RobotFile, origin: &str) -> Option<Lack> {
     })
 }
 
-/// Returns the cables that the log has no data of.
+/// Returns the cables that the log has no data of, or no tension.
 fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
-    let all = 0..names.len();
-    let cables: Vec<usize> =
-        all.filter(|cable| holdings.cables.get(*cable).is_none_or(|of| of.signalled == 0)).collect();
-    let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
-    let lack = (!cables.is_empty()).then(|| Lack {
-        cause: format!("the log has no signal of {}", listed.join(", ")),
-        advice: SILENT_ADVICE,
-        instead: None,
-        cables,
-    });
-    lack.into_iter().collect()
+    let without = |is_lacking: &dyn Fn(&CableHoldings) -> bool| -> Vec<usize> {
+        (0..names.len()).filter(|cable| holdings.cables.get(*cable).is_none_or(is_lacking)).collect()
+    };
+    let lack = |cables: Vec<usize>, cause: &dyn Fn(String) -> String, advice: &'static str| {
+        let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
+        (!cables.is_empty()).then(|| Lack { cause: cause(listed.join(", ")), advice, instead: None, cables })
+    };
+    let silent = without(&|of| of.signalled == 0);
+    let pushing = without(&|of| 2 * of.negative > of.signalled);
+    let pushing = pushing.into_iter().filter(|cable| !silent.contains(cable)).collect();
+    [
+        lack(silent, &|names| format!("the log has no signal of {names}"), SILENT_ADVICE),
+        lack(pushing, &|names| format!("{NEGATIVE_FORCE} of {names}"), NEGATIVE_ADVICE),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// Returns the names of the cables, unless it is all of them.

@@ -26,6 +26,8 @@ pub struct CableErrors {
     pub flagged_count: u64,
     /// Every flag that was raised, as bits.
     pub flags: u32,
+    /// Number of cycles with a sensor force below 0.
+    pub(crate) negative_count: u64,
     /// Number of final cycles that lack only their pose, because a log ends between two poses.
     pub(crate) poseless_end_count: u64,
     /// The flags before these cycles.
@@ -192,6 +194,9 @@ impl Replay {
             by_mass.add(sample.pose.filter(Pose::is_usable), wrenches);
         }
         let outputs = self.compensator.outputs();
+        for (errors, input) in self.cables.iter_mut().zip(sample.cables) {
+            errors.negative_count += u64::from(input.sensor_force_n < 0.0);
+        }
         for ((errors, output), reference_n) in self.cables.iter_mut().zip(outputs).zip(sample.reference_force_n) {
             errors.flagged_count += u64::from(!output.status.is_ok());
             errors.flags |= output.status.bits();

@@ -4,7 +4,7 @@ use fric_core::CableStatus;
 use fric_core::robot::file::{CableTable, RobotFile};
 
 use super::Replay;
-use crate::fit::readiness::without_reference;
+use crate::fit::readiness::{NEGATIVE_ADVICE, NEGATIVE_FORCE, without_reference};
 use crate::scale;
 
 /// Poses come at 10 Hz or faster, so a log ends no later than this after the last one.
@@ -63,6 +63,13 @@ impl Replay {
                 None if trouble.0 > 0 => flagged.push((trouble.0, trouble.1, vec![name])),
                 None => {}
             }
+        }
+        let of_cables = robot.cable_names().into_iter().zip(self.cables());
+        let pushing = of_cables.filter(|(_, cable)| 2 * cable.negative_count > self.cycle_count());
+        let names: Vec<&str> = pushing.map(|(name, _)| name).collect();
+        if !names.is_empty() {
+            let names = names.join(", ");
+            warnings.push(format!("{NEGATIVE_FORCE} of {names}. {}", NEGATIVE_ADVICE.trim_end_matches('.')));
         }
         let silent = CableStatus::SENSOR_NOT_FINITE | CableStatus::MOTION_NOT_FINITE;
         let total = self.cycle_count();

@@ -102,6 +102,12 @@ impl<'a> CableRecord<'a> {
         self.references_n.get(cycle).copied().unwrap_or(f64::NAN)
     }
 
+    /// Returns the forces that the sensor shows, N; NaN where it shows none, because such a sample takes the last good one.
+    pub(crate) fn shown_forces_n(&self) -> Vec<f64> {
+        let shown_n = |row: &Row| if row.signals.sensor_finite { row.signals.sensor_force_n } else { f64::NAN };
+        self.rows.iter().map(shown_n).collect()
+    }
+
     /// Returns a stretch of its cycles, as a log of its own.
     pub(crate) fn stretch(&self, cycles: &Range<usize>) -> Self {
         let rows = self.rows.get(cycles.clone()).unwrap_or_default();

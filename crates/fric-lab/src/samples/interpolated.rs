@@ -5,6 +5,7 @@ use fric_core::Wrench;
 
 use super::cable::CableRecord;
 use super::record::{Measurements, Row};
+use super::repeats::repeated_forces;
 
 /// A log's reference counts as interpolated if more than this fraction of its moving samples lies on the line between their neighbours. A reference
 /// with few digits at the rate of the cycle has a smaller fraction by chance; so does one measured at more than a third of that rate.
@@ -16,9 +17,27 @@ const LEAST_RATE_HZ: f64 = 10.0;
 const ROUNDING_OF_STEP: f64 = 1e-8;
 const ROUNDING_OF_VALUE: f64 = 8.0 * f64::EPSILON;
 
-/// Returns which cycles are measured rather than interpolated between two measurements of the reference: all if it was measured at the rate of the
-/// cycle, or is known.
+/// Returns which cycles are measured rather than interpolated between two measurements of the reference, or with a force that the sensor only repeats:
+/// all if both were measured at the rate of the cycle. A known reference needs no measurement.
 pub fn measured(record: &CableRecord<'_>) -> Vec<bool> {
+    let mut measured = measured_references(record);
+    if let Some(repeated) = repeated_forces(record) {
+        leave_out_repeats(&repeated, &mut measured);
+    }
+    measured
+}
+
+/// Leaves out the cycles with a force that is only repeated. Where the reference is hardly ever measured together with a new force, the cycles with a
+/// new force remain, and the line between two measurements of the reference.
+fn leave_out_repeats(repeated: &[bool], measured: &mut [bool]) {
+    let count = |cycles: &[bool]| cycles.iter().filter(|counts| **counts).count();
+    let new: Vec<bool> = repeated.iter().map(|repeated| !repeated).collect();
+    let together: Vec<bool> = measured.iter().zip(&new).map(|(measured, new)| *measured && *new).collect();
+    let are_apart = 2 * count(&together) <= count(measured).min(count(&new));
+    measured.copy_from_slice(if are_apart { &new } else { &together });
+}
+
+fn measured_references(record: &CableRecord<'_>) -> Vec<bool> {
     if record.reference_is_known {
         return vec![true; record.rows.len()];
     }
@@ -47,7 +66,11 @@ pub fn measured_wrenches(measurements: &Measurements<'_>) -> Vec<bool> {
             .map(|place| joined.is_empty() || joined.iter().any(|measured| measured[place]))
             .collect::<Vec<bool>>()
     };
-    record.logs().flat_map(of_wrenches).collect()
+    let mut measured: Vec<bool> = record.logs().flat_map(of_wrenches).collect();
+    for repeated in measurements.cables().filter_map(|record| repeated_forces(&record)) {
+        leave_out_repeats(&repeated, &mut measured);
+    }
+    measured
 }
 
 /// Returns the same for one log of times and references.

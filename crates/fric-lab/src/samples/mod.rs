@@ -2,7 +2,7 @@
 //!
 //! [`record`] conditions a log once into one row per cycle and cable, and [`store`] holds the rows that do not fit into memory. [`cable`] shows the rows and
 //! references of one cable, as they are or changed. [`selection`] decides which rows are used and why others are not.
-//! [`interpolated`] finds references that lie on a line between two measurements. [`split`] divides a record into training blocks and held-out
+//! [`repeats`] finds signals that show a value several times, and [`interpolated`] references that lie on a line between two measurements. [`split`] divides a record into training blocks and held-out
 //! blocks. [`conditions`] gives the operating conditions of each cycle, [`bins`] divides their range, and [`noise`] estimates the white noise.
 
 pub mod bins;
@@ -11,6 +11,7 @@ pub mod conditions;
 pub mod interpolated;
 pub mod noise;
 pub mod record;
+pub mod repeats;
 pub mod selection;
 pub mod split;
 pub mod store;

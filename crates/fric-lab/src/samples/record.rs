@@ -339,6 +339,11 @@ impl<'a> Measurements<'a> {
         Self { samples, ..self.clone() }
     }
 
+    /// Returns the same measurements with another wrench in each sample.
+    pub(crate) fn with_wrenches(self, wrenches: Vec<Option<Wrench>>) -> Self {
+        Self { platform: PlatformRecord { wrenches, ..self.platform }, ..self }
+    }
+
     /// Returns the same measurements, conditioned again with other limits and thus with another play of the length.
     pub(crate) fn conditioned(&self, limits: &SignalLimits) -> Self {
         let rows = self.cables().map(|record| Some(record.conditioned(limits))).collect();

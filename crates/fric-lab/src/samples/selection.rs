@@ -4,6 +4,7 @@ use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::cable::CableRecord;
 use super::record::Row;
+use super::repeats::{CoarseSteps, runs, stands_still};
 
 /// Counts of used samples, and of samples left out by reason. Every sample is counted once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,10 +34,6 @@ pub enum Standing {
     Outlier,
 }
 
-/// A reference that stays bit-identical while the cable travels this distance is no measurement, m.
-const STILL_TRAVEL_M: f64 = 1e-3;
-/// Minimum number of consecutive samples with the same reference for that.
-const STILL_COUNT: usize = 20;
 /// Remaining fraction of the friction stored at the start of a log at which it no longer matters.
 const FORGOTTEN: f64 = 1e-3;
 /// Minimum travel of a log, as a multiple of the distance of the warm-up, for the log to be used.
@@ -58,17 +55,14 @@ pub fn first_look(record: &CableRecord<'_>, has_reference: impl Fn(usize) -> boo
     record.rows.iter().enumerate().map(standing).collect()
 }
 
-/// Leaves out references that are bit-identical while the cable moves.
+/// Leaves out references that stand still, unless they come in coarse steps.
 pub fn leave_out_still_references(record: &CableRecord<'_>, standings: &mut [Standing]) {
-    let mut start = 0;
-    for run in record.references_n.chunk_by(|one, next| one.to_bits() == next.to_bits()) {
-        let rows = record.rows.get(start..start + run.len()).unwrap_or_default();
-        let travel_m: f64 = rows.iter().map(|row| row.signals.displacement_m.abs()).sum();
-        if run.len() >= STILL_COUNT && travel_m >= STILL_TRAVEL_M {
-            let places = standings.iter_mut().skip(start).take(run.len());
-            places.filter(|standing| **standing == Standing::Used).for_each(|s| *s = Standing::WithoutReference);
-        }
-        start += run.len();
+    if CoarseSteps::of(record.references_n).is_some() {
+        return;
+    }
+    for run in runs(record.references_n).filter(|run| stands_still(record.references_n, run)) {
+        let places = standings.iter_mut().skip(run.start).take(run.len());
+        places.filter(|standing| **standing == Standing::Used).for_each(|s| *s = Standing::WithoutReference);
     }
 }
 

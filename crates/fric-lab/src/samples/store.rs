@@ -156,15 +156,31 @@ impl<'a> SampleStore<'a> {
         (0..group_count).map(move |group| group * cable_count / group_count..(group + 1) * cable_count / group_count)
     }
 
-    /// Returns the measurements with the rows of these cables in memory; of all cables, if the file is not needed.
+    /// Returns the measurements with the rows of these cables in memory; of all cables, if the file is not needed. References that are held between
+    /// measurements come with lines in place of what they repeat.
     ///
     /// # Errors
     /// [`StoreError`] if the temporary file cannot be read.
     pub fn load(&self, cables: Range<usize>) -> Result<Cow<'_, Measurements<'a>>, StoreError> {
+        let given = self.given(cables)?;
+        Ok(given.without_repeats().map_or(given, Cow::Owned))
+    }
+
+    /// Returns the same measurements as they were added.
+    fn given(&self, cables: Range<usize>) -> Result<Cow<'_, Measurements<'a>>, StoreError> {
         let Some(file) = &self.file else { return Ok(Cow::Borrowed(&self.tail)) };
         let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
         let samples: io::Result<Vec<Samples>> = cables.clone().map(|cable| self.read(&mut file, cable)).collect();
         Ok(Cow::Owned(self.tail.holding(cables, samples.map_err(StoreError::new)?)))
+    }
+
+    /// Returns warnings about signals that are slower than the log. `names` are those of the cables.
+    ///
+    /// # Errors
+    /// [`StoreError`] if the temporary file cannot be read.
+    pub fn warnings(&self, names: &[&str]) -> Result<Vec<String>, StoreError> {
+        let told = self.groups().map(|group| Ok(self.given(group)?.repeats_told(names)));
+        Ok(told.collect::<Result<Vec<_>, StoreError>>()?.concat())
     }
 
     /// Returns the measurements with the rows of all cables in memory.

@@ -279,3 +279,56 @@ fn spikes_and_coarse_steps_are_told() {
     assert_eq!((fault.fault, key, found.findings.len()), (Fault::CoarseConverter, "step_n", 0));
     assert!((step_n - 0.06).abs() < 1e-9, "{step_n}");
 }
+
+/// A log writes the last value of a slow device until the next one comes. Only the first of them is measured; the steps are no hum and no delay.
+#[test]
+fn what_a_slow_device_repeats_is_not_counted() {
+    let (points, truth) = points_of(&Case { seed: 70_021, ..Case::of(Group::Nothing) });
+    // How often reference, force and length are shown.
+    for times in [[4, 1, 1], [1, 4, 1], [1, 2, 1], [1, 1, 2], [4, 4, 4]] {
+        let mut shown = points.clone();
+        for (place, point) in shown.iter_mut().enumerate() {
+            let [reference, force, length] = times.map(|times| &points[place - place % times]);
+            point.reference_n = reference.reference_n;
+            point.cable.sensor_force_n = force.cable.sensor_force_n;
+            point.cable.length_m = length.cable.length_m;
+        }
+        let found = look(&[&shown], &truth);
+        assert_eq!(found.faults, [], "{times:?}");
+        assert_complete(&found, truth.floor_n);
+    }
+}
+
+/// A device that stands still for 20 ms shows more identical values than its noise makes.
+#[test]
+fn short_stretches_that_stand_still_are_told() {
+    let (points, truth) = points_of(&Case { seed: 70_022, ..Case::of(Group::Nothing) });
+    let starts = [12_345, 23_456, 30_000, 40_001];
+    let (mut frozen, mut without) = (points.clone(), points);
+    for start in starts {
+        for place in start..start + 20 {
+            frozen[place].cable.sensor_force_n = frozen[start].cable.sensor_force_n;
+            without[place].reference_n = without[start].reference_n;
+        }
+    }
+    let found = look(&[&frozen], &truth);
+    assert_complete(&found, truth.floor_n);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    assert!(fault.fault == Fault::Frozen && fault.intervals_s.len() == starts.len(), "{fault:?}");
+    let found = look(&[&without], &truth);
+    assert_complete(&found, truth.floor_n);
+    assert!(found.samples.without_reference >= 4 * 20, "{:?}", found.samples);
+}
+
+#[test]
+fn a_coarse_reference_is_told() {
+    let (mut points, truth) = points_of(&Case { seed: 70_023, ..Case::of(Group::Nothing) });
+    for point in &mut points {
+        point.reference_n = (point.reference_n / 0.04).round() * 0.04;
+    }
+    let found = look(&[&points], &truth);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    let (key, step_n) = fault.parameters[0];
+    assert_eq!((fault.fault, key, found.findings.len()), (Fault::CoarseConverter, "reference_step_n", 0));
+    assert!((step_n - 0.04).abs() < 1e-9, "{step_n}");
+}

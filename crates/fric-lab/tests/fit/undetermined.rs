@@ -49,6 +49,20 @@ fn motion_one_way_leaves_the_presliding() {
     assert_near(&fit, &["mu", "viscous_n_s_per_m", "offset_n"], &truth.truth());
 }
 
+/// Under a load that stays, Coulomb friction of one direction is an offset. A search may end at μ = 0, which is no better than the given value.
+#[test]
+fn motion_one_way_under_a_constant_load_leaves_coulomb_friction() {
+    let truth = Bench::default();
+    for load_n in [4.0, 8.0, 20.0, 50.0] {
+        let log = truth.run(20.0, |time_s| 1.0 + 0.2 * time_s + 0.15 * time_s.sin(), |_| load_n);
+        let fit = fit(&log, &["mu", "sigma_n_per_m"]);
+        assert!(fit.at_bound.is_empty(), "{load_n} N");
+        // What is kept, 2.5 times the true μ, changes the forces at the pulleys, which share the viscous friction.
+        let ratio = value(&fit, "viscous_n_s_per_m") / truth.viscous_n_s_per_m;
+        assert!((ratio - 1.0).abs() < 0.06, "{load_n} N: {ratio}");
+    }
+}
+
 /// Whatever the pulleys had stored before the log began adds up with ε while nothing moves, so not even that is known.
 #[test]
 fn standstill_tells_nothing() {

@@ -107,6 +107,7 @@ impl<'py> Runs<'py> {
             }
             all.join(&holdings);
         }
+        log::warn(py, &samples.warnings(&robot.borrow().file.cable_names())?)?;
         watch.part(self.0.len() as u64, self.0.len() as u64 + 1);
         Ok(all)
     }

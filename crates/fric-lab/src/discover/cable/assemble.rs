@@ -6,7 +6,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 
 use super::CableLog;
-use super::given::{has_reference, judged};
+use super::given::{comparable, judged};
 use super::passes::Outcome;
 use crate::certainty::log_zeros::log_zeros;
 use crate::discover::Task;
@@ -52,8 +52,7 @@ impl CableLog<'_> {
         let noise_n = rest.noise_n;
         let raw = Workbench { record: self.raw, ..self.bench(self.counts) };
         let held_out = raw.used(true);
-        let with_interpolated =
-            rest::with_interpolated(self.counts, self.measured, |place| has_reference(&self.raw, place));
+        let with_interpolated = rest::with_interpolated(self.counts, self.measured, &comparable(&self.raw));
         let throughout = Workbench { counts: &with_interpolated, ..raw.clone() };
         let held_out_of = |values: &Values| judged(&raw.residuals_n(values), &held_out);
         let before = Model {

@@ -10,6 +10,7 @@ use crate::discover::report::{CableDiscovery, Model};
 use crate::discover::workbench::{self, Workbench};
 use crate::fit::{CableRecord, FitOptions, Parameter, Row};
 use crate::replay::Deviation;
+use crate::samples::repeats::repeated_forces;
 use crate::samples::split::split;
 
 /// Returns the sum of squares, N², of the given model over the held-out samples after fitting it to the training samples. Returns `None` where the
@@ -96,6 +97,11 @@ pub fn acts(parameter: &Parameter, values: &Values) -> bool {
     }
 }
 
-pub(super) fn has_reference(record: &CableRecord<'_>, place: usize) -> bool {
-    record.rows.get(place).is_some_and(Row::is_sound) && record.reference_n(place).is_finite()
+/// Returns which cycles have a reference and a force that the sensor does not only repeat.
+pub(super) fn comparable(record: &CableRecord<'_>) -> Vec<bool> {
+    let repeated = repeated_forces(record).unwrap_or_default();
+    let is_comparable = |(place, row): (usize, &Row)| {
+        row.is_sound() && record.reference_n(place).is_finite() && repeated.get(place) != Some(&true)
+    };
+    record.rows.iter().enumerate().map(is_comparable).collect()
 }

@@ -8,13 +8,11 @@ use std::sync::atomic::AtomicBool;
 
 use fric_core::parameters::{MU, Values};
 
-use self::given::{given_model, has_reference};
+use self::given::{comparable, given_model};
 use crate::candidates::catalogue::around;
 use crate::discover::faults::oscillations::Oscillations;
 use crate::discover::faults::spectrum::{Times, motion_and_load};
-use crate::discover::faults::{
-    CoarseSteps, Fault, RecordingFault, faulty_stretches, leave_out, of_stretches, spikes_among,
-};
+use crate::discover::faults::{Fault, RecordingFault, faulty_stretches, leave_out, of_stretches, spikes_among};
 use crate::discover::naming::Named;
 use crate::discover::readiness::{lack_of, lack_of_noise, lack_of_samples};
 use crate::discover::report::CableDiscovery;
@@ -24,6 +22,7 @@ use crate::discover::{Task, rest};
 use crate::effects::Around;
 use crate::fit::{CableRecord, FitOptions, StoreError};
 use crate::samples::conditions::{Condition, conditions, load, time};
+use crate::samples::repeats::CoarseSteps;
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
 
@@ -73,7 +72,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     let times = Times::of(record);
     let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
     // Samples between two measurements count too, because a line may be faster than the measurements.
-    let throughout = rest::with_interpolated(&counts, &measured, |place| has_reference(record, place));
+    let throughout = rest::with_interpolated(&counts, &measured, &comparable(record));
     let left_by = |values: &Values| Workbench { counts: &throughout, ..bench.clone() }.residuals_n(values);
     let raw = CableLog {
         record: *record,
@@ -117,17 +116,17 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     let mut told = [&stretches[..], &spikes_among(record, &found)].concat();
     told.sort_by_key(|stretch| stretch.cycles.start);
     faults.extend(of_stretches(&told, |cycle| record.time_s(cycle)));
-    let step_n = CoarseSteps::of(record).map(|coarse| coarse.step_n).filter(|step_n| {
+    let gain = record.params.frictionless_gain();
+    let signals = [("step_n", gain, &*record.shown_forces_n()), ("reference_step_n", 1.0, record.references_n)];
+    let coarse = |(key, gain, shown_n): (&'static str, f64, &[f64])| {
+        let step_n = CoarseSteps::of(shown_n)?.step;
         // Rounding noise is uniform within ± half a step.
-        let rounding_n = record.params.frictionless_gain() * step_n / 12.0_f64.sqrt();
-        rounding_n * rounding_n > LEAST_ROUNDING * outcome.rest.noise_n * outcome.rest.noise_n
-    });
-    let coarse = |step_n| RecordingFault {
-        fault: Fault::CoarseConverter,
-        parameters: vec![("step_n", step_n)],
-        intervals_s: Vec::new(),
+        let rounding_n = gain * step_n / 12.0_f64.sqrt();
+        let matters = rounding_n * rounding_n > LEAST_ROUNDING * outcome.rest.noise_n * outcome.rest.noise_n;
+        let fault = Fault::CoarseConverter;
+        matters.then(|| RecordingFault { fault, parameters: vec![(key, step_n)], intervals_s: Vec::new() })
     };
-    faults.extend(step_n.map(coarse));
+    faults.extend(signals.into_iter().filter_map(coarse));
     let case = raw.with_references(&references_n);
     let table = if task.options.empirical { case.table(&outcome, task)? } else { None };
     let mut found = case.report(&outcome, table.as_ref(), samples, faults);

@@ -132,8 +132,11 @@ fn fit_group(
         if !timing::may_be_off(&record, left_n) {
             return None;
         }
-        let fitted = record.params.with_values(&fit.values).ok()?;
-        timing::retimed(&record.with_params(&fitted), stop)
+        // Friction fitted to a late reference is biased, the given one may be a guess.
+        timing::retimed(&record, stop).or_else(|| {
+            let fitted = record.params.with_values(&fit.values).ok()?;
+            timing::retimed(&record.with_params(&fitted), stop)
+        })
     };
     let found: Vec<_> = cables.par_iter().zip(&left_n).enumerate().map(retimed).collect();
     if found.iter().all(Option::is_none) {

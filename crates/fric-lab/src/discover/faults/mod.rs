@@ -14,15 +14,13 @@ pub mod vibration;
 
 use std::ops::Range;
 
-use crate::fit::{CableRecord, Row};
+use crate::fit::CableRecord;
+use crate::samples::repeats::{CoarseSteps, runs, stands_still};
 use crate::samples::selection::Standing;
 
-/// Minimum number of consecutive samples with a bit-identical force for a frozen sensor.
-const FEWEST_STILL: usize = 20;
-/// Such a run must also be this many times as long as the usual runs, for sensors with few digits.
-const STILL_RATIO: usize = 8;
-/// Minimum number of samples at the greatest or least force of a log for this force to be the end of the sensor's range.
+/// Minimum number of samples at the greatest or least force of a log for this force to be the end of the sensor's range, and in usual runs.
 const FEWEST_AT_END: usize = 20;
+const END_RATIO: usize = 8;
 /// A spike differs from the medians of its neighbours on either side by more than this multiple of the median deviation; in white noise one sample in
 /// 10¹³ does. It also differs by more than this multiple of the difference between these two medians.
 const SPIKE_RATIO: f64 = 12.0;
@@ -33,14 +31,6 @@ const AGREEMENT: f64 = 4.0;
 const OUTLIER_RATIO: f64 = 6.0;
 /// A spike that no fit has seen also exceeds this fraction of the force. Friction of 8 % that reverses for one cycle makes 16 %.
 const FRICTION_RATIO: f64 = 0.25;
-/// The maximum distance of a value from a multiple of a coarse converter's step, which allows for rounding.
-const OFF_STEP: f64 = 1e-3;
-/// Minimum fraction of the values that a coarse converter shows twice or more in a row. A step as great as the noise gives 0.28; it adds a twelfth to
-/// the variance of the noise. Half and twice this fraction find the same in 199 logs, of which the eight with such a converter have 0.4 and more, all others 0.0001.
-const LEAST_REPEATED: f64 = 0.25;
-/// Maximum of the usual change from one value to another, in steps. More is a signal that is shown several times, with as many digits as it was
-/// written; noise is then tens of the last digit. Half and twice as many find the same in those logs.
-const MOST_STEPS: f64 = 2.0;
 /// Time that is left out after a faulty stretch, s. The friction of the model has to settle again.
 const AFTER_S: f64 = 0.1;
 /// Two stretches closer than this are merged, s.
@@ -91,18 +81,12 @@ pub struct FaultyStretch {
 
 /// Returns the stretches of a cable's log with a faulty sensor, in the order of time.
 pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
-    let shown = shown_forces_n(record);
-    let runs: Vec<Range<usize>> = shown
-        .chunk_by(|one, next| one.to_bits() == next.to_bits())
-        .scan(0, |start, run| {
-            *start += run.len();
-            Some(*start - run.len()..*start)
-        })
-        .filter(|run| shown.get(run.start).is_some_and(|force_n| force_n.is_finite()))
-        .collect();
+    let shown = record.shown_forces_n();
+    let has_value = |run: &Range<usize>| shown.get(run.start).is_some_and(|force_n| force_n.is_finite());
+    let runs: Vec<Range<usize>> = runs(&shown).filter(has_value).collect();
     let usual = usual_length(&runs, runs.iter().map(Range::len).sum());
     let mut stretches = Vec::new();
-    let coarse = CoarseSteps::of_forces(&shown);
+    let coarse = CoarseSteps::of(&shown);
     // Where the force turns, a coarse sensor shows its last value as often as any other.
     let ends = ends_of_range(&shown, coarse.map_or(usual, |coarse| coarse.samples_a_value));
     let is_end = |force_n: f64| ends.iter().any(|end| end.to_bits() == force_n.to_bits());
@@ -110,7 +94,7 @@ pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
         let Some(force_n) = shown.get(run.start) else { continue };
         if is_end(*force_n) {
             stretches.push(FaultyStretch { fault: Fault::Clipped, cycles: run });
-        } else if coarse.is_none() && run.len() >= FEWEST_STILL.max(STILL_RATIO * usual) {
+        } else if coarse.is_none() && stands_still(&shown, &run) {
             // A steady force stays within one coarse step, so such a sensor cannot be distinguished from a frozen one.
             stretches.push(FaultyStretch { fault: Fault::Frozen, cycles: run });
         }
@@ -126,7 +110,7 @@ pub fn spikes_among(record: &CableRecord<'_>, standings: &[Standing]) -> Vec<Fau
     if !standings.contains(&Standing::Outlier) {
         return Vec::new();
     }
-    let (of_sensor, usual_n) = jumps(&shown_forces_n(record));
+    let (of_sensor, usual_n) = jumps(&record.shown_forces_n());
     let (of_reference, usual_reference_n) = jumps(record.references_n);
     let is_outlier = |place: usize| standings.get(place) == Some(&Standing::Outlier);
     let is_spike = |(place, (sensor, reference)): &(usize, (&Jump, &Jump))| {
@@ -183,54 +167,6 @@ fn jumps(shown: &[f64]) -> (Vec<Jump>, f64) {
     (jumps, usual_n)
 }
 
-/// The steps of a coarse converter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoarseSteps {
-    /// The step, N.
-    pub step_n: f64,
-    /// Average number of samples that show the same value.
-    samples_a_value: usize,
-}
-
-impl CoarseSteps {
-    /// Returns the steps of a cable's sensor; `None` if they are not coarse: the values are not multiples of one step apart, or change in nearly every
-    /// sample, or usually by many steps.
-    pub fn of(record: &CableRecord<'_>) -> Option<Self> {
-        Self::of_forces(&shown_forces_n(record))
-    }
-
-    fn of_forces(shown_n: &[f64]) -> Option<Self> {
-        let finite_n: Vec<f64> = shown_n.iter().copied().filter(|force_n| force_n.is_finite()).collect();
-        let (mut runs, mut repeated, mut changes_n) = (0.0, 0.0, Vec::new());
-        let mut last_n = None;
-        for run in finite_n.chunk_by(|one, next| one.to_bits() == next.to_bits()) {
-            runs += 1.0;
-            repeated += if run.len() > 1 { 1.0 } else { 0.0 };
-            changes_n.extend(last_n.map(|last_n: f64| (run[0] - last_n).abs()));
-            last_n = Some(run[0]);
-        }
-        if changes_n.is_empty() || repeated < LEAST_REPEATED * runs {
-            return None;
-        }
-        let mut values_n = finite_n.clone();
-        values_n.sort_by(f64::total_cmp);
-        values_n.dedup();
-        let gaps_n = || values_n.windows(2).map(|pair| pair[1] - pair[0]);
-        let step_n = gaps_n().fold(f64::INFINITY, f64::min);
-        let middle = changes_n.len() / 2;
-        let usual_n = *changes_n.select_nth_unstable_by(middle, f64::total_cmp).1;
-        let is_multiple = |gap_n: f64| (gap_n / step_n - (gap_n / step_n).round()).abs() < OFF_STEP;
-        (usual_n < (MOST_STEPS + 0.5) * step_n && gaps_n().all(is_multiple))
-            .then(|| Self { step_n, samples_a_value: finite_n.len() / values_n.len() })
-    }
-}
-
-/// Returns the forces that a cable's sensor shows, N; NaN where it shows none, because such a sample takes the last good one.
-fn shown_forces_n(record: &CableRecord<'_>) -> Vec<f64> {
-    let shown_n = |row: &Row| if row.signals.sensor_finite { row.signals.sensor_force_n } else { f64::NAN };
-    record.rows.iter().map(shown_n).collect()
-}
-
 /// Returns the run length that half of the samples belong to.
 fn usual_length(runs: &[Range<usize>], samples: usize) -> usize {
     let mut lengths: Vec<usize> = runs.iter().map(Range::len).collect();
@@ -251,7 +187,7 @@ fn ends_of_range(forces_n: &[f64], usual: usize) -> Vec<f64> {
     for pick in [f64::max as fn(f64, f64) -> f64, f64::min] {
         let Some(end) = forces_n.iter().copied().filter(|force_n| force_n.is_finite()).reduce(pick) else { continue };
         let at_end = forces_n.iter().filter(|force_n| force_n.to_bits() == end.to_bits()).count();
-        if at_end >= FEWEST_AT_END.max(STILL_RATIO * usual) {
+        if at_end >= FEWEST_AT_END.max(END_RATIO * usual) {
             ends.push(end);
         }
     }
@@ -314,25 +250,9 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_coarse_beside_the_noise() {
-        let step_n = |shown_n: &[f64]| CoarseSteps::of_forces(shown_n).map(|coarse| coarse.step_n);
-        // Some 150 values, 27 samples each; 600 values, 7 samples each.
-        for coarse_n in [0.04, 0.01] {
-            assert!(step_n(&shown_n(coarse_n, 1)).is_some_and(|found_n| (found_n / coarse_n - 1.0).abs() < 1e-6));
-        }
-        // Digits below the noise, also where every value is shown ten times.
-        assert_eq!([1e-3, 1e-5].map(|written_n| step_n(&shown_n(written_n, 1))), [None; 2]);
-        assert_eq!(step_n(&shown_n(1e-5, 10)), None);
-        // A sensor that is frozen half of the time.
-        let mut frozen_n = shown_n(1e-5, 1);
-        frozen_n[1000..3000].fill(10.0);
-        assert_eq!(step_n(&frozen_n), None);
-    }
-
-    #[test]
     fn where_a_coarse_force_turns_its_range_does_not_end() {
         let coarse_n = shown_n(0.04, 1);
-        let a_value = CoarseSteps::of_forces(&coarse_n).unwrap().samples_a_value;
+        let a_value = CoarseSteps::of(&coarse_n).unwrap().samples_a_value;
         // As in a fine sensor, the last value would be the end of the range.
         assert!(!ends_of_range(&coarse_n, 4).is_empty());
         assert_eq!(ends_of_range(&coarse_n, a_value), Vec::<f64>::new());

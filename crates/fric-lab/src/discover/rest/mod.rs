@@ -219,16 +219,16 @@ fn share_of_wave(excess: &Excess<'_>) -> f64 {
     samples / count * (count * level_n * level_n + wave) / excess.sum()
 }
 
-/// Returns the samples that count, and the sound samples between two of them, which lie on the line from one measurement to the next.
-pub fn with_interpolated(counts: &[bool], measured: &[bool], is_sound: impl Fn(usize) -> bool) -> Vec<bool> {
+/// Returns the samples that count, and those between two of them that can be compared, which lie on the line from one measurement to the next.
+pub fn with_interpolated(counts: &[bool], measured: &[bool], comparable: &[bool]) -> Vec<bool> {
     let mut all = counts.to_vec();
     let mut before = 0;
     for (place, counts_too) in counts.iter().enumerate().filter(|(place, _)| measured.get(*place) == Some(&true)) {
         let is_between = *counts_too && counts.get(before) == Some(&true);
         let between = before + 1..place;
         before = place;
-        if is_between && let Some(all) = all.get_mut(between.clone()) {
-            all.iter_mut().zip(between).for_each(|(counts, place)| *counts = is_sound(place));
+        if is_between && let Some((all, comparable)) = all.get_mut(between.clone()).zip(comparable.get(between)) {
+            all.copy_from_slice(comparable);
         }
     }
     all

@@ -47,10 +47,14 @@ impl FaultResult {
                     left_out()
                 )
             }
-            Fault::CoarseConverter => format!(
-                "the force sensor has steps of {}, which are part of the noise; use more of the converter's range, or one of more bits",
-                newtons(value("step_n"))
-            ),
+            Fault::CoarseConverter => {
+                let of_sensor = self.parameters.get("step_n").map(|step_n| ("force sensor", step_n));
+                let (signal, step_n) = of_sensor.unwrap_or(("reference", value("reference_step_n")));
+                format!(
+                    "the {signal} has steps of {}, which are part of the noise; use more of the converter's range, or one of more bits",
+                    newtons(step_n)
+                )
+            }
             Fault::ReferenceDelay => format!(
                 "the reference comes late by {}, and was put where it belongs; stamp it where it is measured, or take the filter of its \
                  amplifier into account",

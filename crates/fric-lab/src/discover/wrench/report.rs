@@ -152,8 +152,8 @@ impl Case<'_, '_> {
             }),
             neighbours: Vec::new(),
         });
-        let is_sound = |place: usize| record.rows.get(place).is_some_and(Row::is_sound);
-        let judging = Bench { counts: with_interpolated(&bench.counts, bench.measured, is_sound), ..bench.clone() };
+        let sound: Vec<bool> = record.rows.iter().map(Row::is_sound).collect();
+        let judging = Bench { counts: with_interpolated(&bench.counts, bench.measured, &sound), ..bench.clone() };
         let count = base.model.unknowns().len();
         CableDiscovery {
             samples,
