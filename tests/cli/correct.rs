@@ -114,7 +114,7 @@ fn a_fit_corrects_by_itself_and_says_so() {
     assert!(!run.stdout.contains("recording") && cables(&clean).iter().all(|cable| cable.get("faults").is_none()));
     // Friction fitted to a reference that is 120 ms late is far off.
     for late_ms in [20_u32, 120] {
-        let (run, late) = fit(&restamped(|nanos| nanos + u64::from(late_ms) * 1_000_000));
+        let (run, late) = fit(&restamped(|nanos| nanos + i64::from(late_ms) * 1_000_000));
         assert!(run.stdout.contains("recording: the reference comes late by"), "{run:#?}");
         for (clean, late) in cables(&clean).iter().zip(cables(&late)) {
             let delay_s = fault(late, "reference_delay")["delay_s"].as_f64().unwrap();
