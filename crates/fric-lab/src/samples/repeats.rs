@@ -19,6 +19,8 @@ const LEAST_REGULAR: f64 = 0.8;
 const ALIKE_COUNT: usize = 3;
 /// Minimum rate of a held signal, Hz, as of an interpolated one. Slower changes are those of the signal: weights that are put on by hand.
 const LEAST_RATE_HZ: f64 = 10.0;
+/// One in so many changes is smaller than the steps of a signal without coarse ones. Of noise they are a tenth of the median, of a wave a ninth.
+const FEW_IN: usize = 20;
 /// Minimum number of changes that tell of a device.
 const FEWEST_CHANGES: usize = 50;
 /// The maximum distance of a value from a multiple of a coarse converter's step, which allows for rounding.
@@ -112,7 +114,7 @@ impl Held {
         Self::of(record, |place| {
             shown.get(place.wrapping_sub(1)..=place).is_some_and(|pair| pair[0].is_finite() && is_same(pair))
         })
-        .filter(|_| CoarseSteps::of(shown).is_none())
+        .filter(|_| changes_vary(shown))
     }
 
     /// Returns where the reference of a cable is held. A known one is not measured.
@@ -177,6 +179,15 @@ fn is_regular(again: &[bool], interval_s: f64) -> bool {
     };
     let middle = lengths.get(lengths.len() / 2).copied().unwrap_or(0);
     lengths.len() >= FEWEST_CHANGES && (middle.saturating_sub(ALIKE_COUNT - 1).max(2)..=middle).any(is_usual)
+}
+
+/// Whether a signal usually changes by more than one step. Steps of a coarse sensor or encoder are all alike, and in a steady motion come regularly too.
+fn changes_vary(shown: &[f64]) -> bool {
+    let changes = shown.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let mut changes: Vec<f64> = changes.filter(|change| *change > 0.0 && change.is_finite()).collect();
+    changes.sort_unstable_by(f64::total_cmp);
+    let quantile = |of: usize| changes.get(changes.len() / of).copied().unwrap_or(0.0);
+    quantile(2) > (MOST_STEPS + 0.5) * quantile(FEW_IN)
 }
 
 /// Returns where the sensor of a cable shows its last measurement once more; `None` if it measures in every cycle.
@@ -310,7 +321,7 @@ mod tests {
     fn is_held(shown_n: &[f64]) -> bool {
         let again = |place: usize| place > 0 && shown_n[place - 1].to_bits() == shown_n[place].to_bits();
         let again: Vec<bool> = (0..shown_n.len()).map(again).collect();
-        is_regular(&again, 1e-3) && CoarseSteps::of(shown_n).is_none()
+        is_regular(&again, 1e-3) && changes_vary(shown_n)
     }
 
     #[test]
@@ -346,7 +357,10 @@ mod tests {
         assert!(!is_held(&shown_n(1e-5, |_| 200)));
         assert!(!is_held(&shown_n(1e-5, |_| 1)));
         // A wave without noise in coarse steps has runs of nearly the same length where it is steep.
-        let wave_n: Vec<f64> = (0..8000).map(|place| (100.0 * (0.005 * f64::from(place)).sin()).round()).collect();
-        assert!(!is_held(&wave_n));
+        let wave = |place: i32| (100.0 * (0.005 * f64::from(place)).sin()).round();
+        assert!(!is_held(&(0..8000).map(wave).collect::<Vec<f64>>()));
+        // Counts of 4096 a turn of 0.4 m, written in µm.
+        let counts = |place: i32| (wave(place) * 400.0 / 4096.0 * 1e3).round() * 1e-6;
+        assert!(!is_held(&(0..8000).map(counts).collect::<Vec<f64>>()));
     }
 }
