@@ -225,6 +225,17 @@ fn a_force_of_the_other_sign_is_told() {
     }
 }
 
+#[test]
+fn rows_that_are_not_in_order_are_told() {
+    let place = Place::with_log();
+    let plain = Rows::of(short_log()).plain();
+    let mut lines: Vec<&str> = plain.lines().collect();
+    lines.swap(50, 200);
+    place.write("run.csv", lines.join("\n"));
+    let told = unwrapped(&place.run(&["replay", "run.csv", "--model", "robot.toml"]).stderr);
+    assert!(told.contains("late message left out") && told.contains("sort them"), "{told}");
+}
+
 /// Times that are no seconds make speeds, and with them viscous friction, a thousand times too small.
 #[test]
 fn times_in_another_unit_are_told() {
