@@ -35,9 +35,38 @@ pub struct Holdings {
 #[derive(Clone, Copy, Debug, Default)]
 struct CableHoldings {
     signalled: u64,
-    /// Of these, those with a sensor force below 0.
-    negative: u64,
+    tension: Tension,
     referenced: u64,
+}
+
+/// The sign of the forces that a sensor shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Tension {
+    count: u64,
+    negative: u64,
+    sum_n: f64,
+}
+
+impl Tension {
+    /// Adds the force of a sample.
+    pub fn add(&mut self, force_n: f64) {
+        if force_n.is_finite() {
+            self.count += 1;
+            self.negative += u64::from(force_n < 0.0);
+            self.sum_n += force_n;
+        }
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        self.negative += other.negative;
+        self.sum_n += other.sum_n;
+    }
+
+    /// Whether most forces and their mean are negative. An untared sensor of a cable that is slack for most of the time has a positive mean.
+    pub fn is_turned(&self) -> bool {
+        2 * self.negative > self.count && self.sum_n < 0.0
+    }
 }
 
 impl Holdings {
@@ -75,9 +104,8 @@ impl Holdings {
         }
         for (holdings, (input, reference_n)) in self.cables.iter_mut().zip(row.cables.iter().zip(row.reference_force_n))
         {
-            let is_signalled = input.sensor_force_n.is_finite() && input.length_m.is_finite();
-            holdings.signalled += u64::from(is_signalled);
-            holdings.negative += u64::from(is_signalled && input.sensor_force_n < 0.0);
+            holdings.signalled += u64::from(input.sensor_force_n.is_finite() && input.length_m.is_finite());
+            holdings.tension.add(input.sensor_force_n);
             holdings.referenced += u64::from(reference_n.is_finite());
         }
     }
@@ -91,7 +119,7 @@ impl Holdings {
         self.intervals_s += other.intervals_s;
         for (cable, other) in self.cables.iter_mut().zip(&other.cables) {
             cable.signalled += other.signalled;
-            cable.negative += other.negative;
+            cable.tension.join(&other.tension);
             cable.referenced += other.referenced;
         }
     }
@@ -386,7 +414,7 @@ fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
         (!cables.is_empty()).then(|| Lack { cause: cause(listed.join(", ")), advice, instead: None, cables })
     };
     let silent = without(&|of| of.signalled == 0);
-    let pushing = without(&|of| 2 * of.negative > of.signalled);
+    let pushing = without(&|of| of.tension.is_turned());
     let pushing = pushing.into_iter().filter(|cable| !silent.contains(cable)).collect();
     [
         lack(silent, &|names| format!("the log has no signal of {names}"), SILENT_ADVICE),

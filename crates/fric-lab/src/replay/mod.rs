@@ -14,6 +14,7 @@ use std::collections::VecDeque;
 use fric_core::{AnyCompensator, CableOutput, CableParams, CableStatus, ParamError, Pose, RobotParams, Sample, Wrench};
 
 use crate::clock::Clock;
+use crate::fit::readiness::Tension;
 use crate::scale::Scale;
 use crate::weight::Weight;
 
@@ -26,8 +27,8 @@ pub struct CableErrors {
     pub flagged_count: u64,
     /// Every flag that was raised, as bits.
     pub flags: u32,
-    /// Number of cycles with a sensor force below 0.
-    pub(crate) negative_count: u64,
+    /// The sign of the sensor's forces.
+    pub(crate) tension: Tension,
     /// Number of final cycles that lack only their pose, because a log ends between two poses.
     pub(crate) poseless_end_count: u64,
     /// The flags before these cycles.
@@ -195,7 +196,7 @@ impl Replay {
         }
         let outputs = self.compensator.outputs();
         for (errors, input) in self.cables.iter_mut().zip(sample.cables) {
-            errors.negative_count += u64::from(input.sensor_force_n < 0.0);
+            errors.tension.add(input.sensor_force_n);
         }
         for ((errors, output), reference_n) in self.cables.iter_mut().zip(outputs).zip(sample.reference_force_n) {
             errors.flagged_count += u64::from(!output.status.is_ok());

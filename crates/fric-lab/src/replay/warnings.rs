@@ -65,7 +65,7 @@ impl Replay {
             }
         }
         let of_cables = robot.cable_names().into_iter().zip(self.cables());
-        let pushing = of_cables.filter(|(_, cable)| 2 * cable.negative_count > self.cycle_count());
+        let pushing = of_cables.filter(|(_, cable)| cable.tension.is_turned());
         let names: Vec<&str> = pushing.map(|(name, _)| name).collect();
         if !names.is_empty() {
             let names = names.join(", ");

@@ -67,7 +67,11 @@ pub fn measured_wrenches(measurements: &Measurements<'_>) -> Vec<bool> {
             .collect::<Vec<bool>>()
     };
     let mut measured: Vec<bool> = record.logs().flat_map(of_wrenches).collect();
-    for repeated in measurements.cables().filter_map(|record| repeated_forces(&record)) {
+    // Sensors that are read in turn have a new force in each sample.
+    let of_cables = measurements.cables().map(|record| repeated_forces(&record));
+    let both = |one: Vec<bool>, other: Vec<bool>| one.iter().zip(other).map(|(one, other)| *one && other).collect();
+    let repeated = of_cables.reduce(|one, other| Some(both(one?, other?))).flatten();
+    if let Some(repeated) = repeated {
         leave_out_repeats(&repeated, &mut measured);
     }
     measured

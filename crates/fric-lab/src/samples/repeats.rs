@@ -5,12 +5,11 @@
 use std::ops::Range;
 
 use fric_core::Wrench;
-use fric_core::signals::Conditioned;
+use fric_core::signals::SignalLimits;
 use nalgebra::Vector3;
 
 use super::cable::CableRecord;
 use super::record::{Measurements, Row};
-use crate::text::significant;
 
 /// Minimum fraction of the changes that follow the one before after nearly the same number of samples, for a held signal. A value that repeats by chance does
 /// so in 47 % at most; a held one that jitters by a sample does in all. Half of the distance to either gives the same for the logs of the tests.
@@ -70,30 +69,33 @@ impl CoarseSteps {
     }
 }
 
-/// Maximum number of runs of bit-identical values in a log that are as long by chance, for a sensor that stands still. Half and twice as many change the
+/// Maximum number of runs of bit-identical values in a log that are as long by chance, if values repeat independently. Half and twice as many change the
 /// least number of samples by one at most.
 const BY_CHANCE: f64 = 1e-3;
-/// Number of samples on either side that tell how often a value repeats.
-const REPEATS_AROUND: usize = 50;
+/// Number of samples on either side that tell how often a value repeats: more than are needed to tell one in ten from one in a hundred.
+const SAMPLES_BESIDE: usize = 50;
 
-/// Whether so long a run of identical values is not by chance, given how often the values on the side of it where they repeat more often do so.
+/// Whether so long a run of identical values is not by chance, given how often the values repeat on the side of it where they do so more often. The longest
+/// run on a side does not count, which may be another of the kind; nor do missing values, NaN.
 pub fn stands_still(shown: &[f64], run: &Range<usize>) -> bool {
-    let sides = [
-        run.start.saturating_sub(REPEATS_AROUND)..run.start,
-        run.end.min(shown.len())..(run.end + REPEATS_AROUND).min(shown.len()),
-    ];
-    let probability = |side: Range<usize>| {
-        let pairs = shown.get(side).unwrap_or_default().windows(2);
-        let (count, repeats) = pairs.fold((0.0, 0.0), |(count, repeats), pair| {
-            (count + 1.0, repeats + if pair[0].to_bits() == pair[1].to_bits() { 1.0 } else { 0.0 })
-        });
-        // The mean of a probability of which nothing else is known.
-        (repeats + 1.0) / (count + 2.0)
-    };
-    let probability: f64 = sides.map(probability).into_iter().fold(0.0, f64::max);
+    let before = shown.get(..run.start).unwrap_or_default().iter().rev();
+    let after = shown.get(run.end..).unwrap_or_default().iter();
+    let probability = repeat_probability(before).max(repeat_probability(after));
     #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
     let (samples, repeats) = (shown.len() as f64, run.len() as f64 - 1.0);
     samples * probability.powf(repeats) < BY_CHANCE
+}
+
+/// Returns the probability that a value repeats, from the next ones without their longest run.
+fn repeat_probability<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    let nearest: Vec<f64> = values.copied().filter(|value| value.is_finite()).take(SAMPLES_BESIDE).collect();
+    let lengths: Vec<usize> = runs(&nearest).map(|run| run.len()).collect();
+    let longest = lengths.iter().max().copied().unwrap_or(0);
+    let repeats = nearest.len() - lengths.len() - longest.saturating_sub(1);
+    #[expect(clippy::cast_precision_loss, reason = "small counts")]
+    let (repeats, pairs) = (repeats as f64, (nearest.len() - longest) as f64);
+    // The mean of a probability of which nothing else is known.
+    (repeats + 1.0) / (pairs + 2.0)
 }
 
 /// Returns the runs of bit-identical values.
@@ -105,16 +107,22 @@ pub fn runs(shown: &[f64]) -> impl Iterator<Item = Range<usize>> {
 }
 
 /// Where a signal shows the measurement before once more, because it is held between two measurements.
-struct Held(Vec<bool>);
+struct Held {
+    again: Vec<bool>,
+    /// Usual number of samples that show a measurement, and the greatest one between two measurements of which none is missing.
+    times: usize,
+    most_times: usize,
+}
 
 impl Held {
     /// Returns where a signal is held; `None` if it is measured throughout.
     fn of_signal(record: &CableRecord<'_>, shown: &[f64]) -> Option<Self> {
-        let is_same = |pair: &[f64]| pair[0].to_bits() == pair[1].to_bits();
-        Self::of(record, |place| {
-            shown.get(place.wrapping_sub(1)..=place).is_some_and(|pair| pair[0].is_finite() && is_same(pair))
-        })
-        .filter(|_| changes_vary(shown))
+        let is_same = |place: usize| {
+            let now = shown.get(place).filter(|value| value.is_finite())?;
+            let before = shown.get(place.wrapping_sub(1));
+            Some(before.is_some_and(|before| before.to_bits() == now.to_bits()))
+        };
+        Self::of(record, is_same).filter(|_| changes_vary(shown))
     }
 
     /// Returns where the reference of a cable is held. A known one is not measured.
@@ -127,58 +135,77 @@ impl Held {
         Self::of_signal(record, &lengths_m(record))
     }
 
-    /// Returns where the logs repeat a sample of which `is_same` says whether it is like the one before, if any of them is held.
-    fn of(record: &CableRecord<'_>, is_same: impl Fn(usize) -> bool) -> Option<Self> {
+    /// Returns where the logs repeat a sample of which `is_same` says whether it is like the one before, if any of them is held. It says nothing where the
+    /// sample is missing.
+    fn of(record: &CableRecord<'_>, is_same: impl Fn(usize) -> Option<bool>) -> Option<Self> {
+        let mut hold = None;
         let of_log = |(start, rows): (usize, &[Row])| {
-            let mut again: Vec<bool> = (start..start + rows.len()).map(&is_same).collect();
+            let mut again: Vec<Option<bool>> = (start..start + rows.len()).map(&is_same).collect();
             if let Some(first) = again.first_mut() {
-                *first = false;
+                *first = first.map(|_| false);
             }
-            if is_regular(&again, record.interval_s) { again } else { vec![false; again.len()] }
+            let of_log = regular_hold(&again, record.interval_s);
+            hold = hold.max(of_log);
+            again.into_iter().map(move |again| of_log.is_some() && again == Some(true))
         };
-        let again: Vec<bool> = record.logs().flat_map(of_log).collect();
-        again.contains(&true).then_some(Self(again))
+        let again = record.logs().flat_map(of_log).collect();
+        let (times, most_times) = hold?;
+        Some(Self { again, times, most_times })
     }
 
-    /// Returns how often each measurement is shown on average.
-    #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
-    fn times(&self) -> f64 {
-        let new = self.0.iter().filter(|again| !**again).count();
-        self.0.len() as f64 / new.max(1) as f64
-    }
-
-    /// Returns a signal with lines between its measurements, NaN beyond the last one of each log.
+    /// Returns a signal with lines between its measurements, and NaN where some are missing.
     fn with_lines(&self, record: &CableRecord<'_>, shown: &[f64]) -> Vec<f64> {
         let mut lines = shown.to_vec();
-        for (start, rows) in record.logs() {
-            let knots: Vec<usize> = (start..start + rows.len()).filter(|place| !self.0[*place]).collect();
-            for pair in knots.windows(2) {
-                let (from, to) = (pair[0], pair[1]);
-                let slope = (shown[to] - shown[from]) / (record.time_s(to) - record.time_s(from));
-                for (place, line) in lines.iter_mut().enumerate().take(to).skip(from + 1) {
-                    *line = shown[from] + slope * (record.time_s(place) - record.time_s(from));
-                }
+        self.visit_holds(record, |hold, next| {
+            let is_missing = next.is_none() || hold.len() > self.most_times;
+            let from = hold.start;
+            let slope =
+                next.map_or(f64::NAN, |next| (shown[next] - shown[from]) / (record.time_s(next) - record.time_s(from)));
+            for (place, line) in lines.iter_mut().enumerate().take(hold.end).skip(from + 1) {
+                let on_line = shown[from] + slope * (record.time_s(place) - record.time_s(from));
+                *line = if is_missing { f64::NAN } else { on_line };
             }
-            if let Some(last) = knots.last() {
-                lines[last + 1..start + rows.len()].fill(f64::NAN);
+        });
+        lines
+    }
+
+    /// Visits each measurement with the samples that repeat it, and the next measurement of the same log.
+    fn visit_holds(&self, record: &CableRecord<'_>, mut visit: impl FnMut(Range<usize>, Option<usize>)) {
+        for (start, rows) in record.logs() {
+            let of_log = self.again.get(start..start + rows.len()).unwrap_or_default();
+            let mut from = start;
+            for hold in of_log.chunk_by(|_, next| *next) {
+                let to = from + hold.len();
+                if hold.len() > 1 {
+                    visit(from..to, Some(to).filter(|next| *next < start + rows.len()));
+                }
+                from = to;
             }
         }
-        lines
     }
 }
 
-/// Whether the samples of a log, with this time between them, s, nearly always repeat the one before equally often.
-fn is_regular(again: &[bool], interval_s: f64) -> bool {
-    let mut lengths: Vec<usize> = again.chunk_by(|_, next| *next).map(<[bool]>::len).collect();
+/// Returns the usual number of samples that a log with this time between them, s, shows a measurement, and the greatest one that counts as nearly the
+/// same; `None` unless nearly all are alike.
+fn regular_hold(again: &[Option<bool>], interval_s: f64) -> Option<(usize, usize)> {
+    let (mut lengths, mut present) = (Vec::new(), None);
+    for again in again {
+        match again {
+            None => present = None,
+            Some(false) => lengths.extend(present.replace(1)),
+            Some(true) => present = present.map(|length: usize| length + 1),
+        }
+    }
     lengths.sort_unstable();
     let up_to = |length: usize| lengths.partition_point(|other| *other <= length);
     #[expect(clippy::cast_precision_loss, reason = "counts")]
-    let is_usual = |shortest: usize| {
+    let is_usual = |shortest: &usize| {
         let alike = up_to(shortest + ALIKE_COUNT - 1) - up_to(shortest - 1);
-        alike as f64 >= LEAST_REGULAR * lengths.len() as f64 && shortest as f64 * interval_s * LEAST_RATE_HZ <= 1.0
+        alike as f64 >= LEAST_REGULAR * lengths.len() as f64 && *shortest as f64 * interval_s * LEAST_RATE_HZ <= 1.0
     };
-    let middle = lengths.get(lengths.len() / 2).copied().unwrap_or(0);
-    lengths.len() >= FEWEST_CHANGES && (middle.saturating_sub(ALIKE_COUNT - 1).max(2)..=middle).any(is_usual)
+    let middle = *lengths.get(lengths.len() / 2)?;
+    let shortest = (middle.saturating_sub(ALIKE_COUNT - 1).max(2)..=middle).find(is_usual)?;
+    (lengths.len() >= FEWEST_CHANGES).then_some((middle, shortest + ALIKE_COUNT - 1))
 }
 
 /// Whether a signal usually changes by more than one step. Steps of a coarse sensor or encoder are all alike, and in a steady motion come regularly too.
@@ -192,35 +219,45 @@ fn changes_vary(shown: &[f64]) -> bool {
 
 /// Returns where the sensor of a cable shows its last measurement once more; `None` if it measures in every cycle.
 pub fn repeated_forces(record: &CableRecord<'_>) -> Option<Vec<bool>> {
-    Some(Held::of_signal(record, &record.shown_forces_n())?.0)
+    Some(Held::of_signal(record, &record.shown_forces_n())?.again)
 }
 
 fn lengths_m(record: &CableRecord<'_>) -> Vec<f64> {
-    record.rows.iter().map(|row| row.signals.length_m).collect()
+    let length_m = |row: &Row| if row.signals.motion_finite { row.signals.length_m } else { f64::NAN };
+    record.rows.iter().map(length_m).collect()
 }
 
-/// Returns the rows of a cable with lines between the lengths that were measured. The speed is the mean over one measurement before and after; that of the
-/// steps would lag.
-fn rows_with_lines(record: &CableRecord<'_>) -> Option<Vec<Row>> {
+/// Returns the rows of a cable with lines between the lengths that were measured. A cable that rests does so until one hold before it has moved. The speed
+/// of a held length is the mean over one measurement before and after; that of the steps would lag.
+fn rows_with_lines(record: &CableRecord<'_>, limits: &SignalLimits) -> Option<Vec<Row>> {
     let held = Held::of_length(record)?;
-    let lines_m = held.with_lines(record, &lengths_m(record));
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-    let reach = held.times().round() as usize;
     let mut rows = record.rows.to_vec();
+    held.visit_holds(record, |hold, next| {
+        let Some(next) = next else { return };
+        let from = hold.start.max(next.saturating_sub(held.most_times));
+        let (start_m, end_m) = (record.rows[from].signals.length_m, record.rows[next].signals.length_m);
+        let slope = (end_m - start_m) / (record.time_s(next) - record.time_s(from));
+        if slope.is_finite() {
+            for (place, row) in rows.iter_mut().enumerate().take(next).skip(from + 1) {
+                row.signals.length_m = start_m + slope * (record.time_s(place) - record.time_s(from));
+            }
+        }
+    });
+    let lengths_m: Vec<f64> = rows.iter().map(|row| row.signals.length_m).collect();
     for (start, log) in record.logs() {
-        let last = start + log.len() - 1;
-        for place in start..=last {
-            let (before, after) = (place.saturating_sub(reach).max(start), (place + reach).min(last));
-            let displacement_m = lines_m[place] - lines_m[place.saturating_sub(1).max(start)];
-            let way_m = lines_m[after] - lines_m[before];
-            if (displacement_m + way_m).is_finite() && after > before {
-                let speed_m_per_s = way_m / (record.time_s(after) - record.time_s(before));
-                let signals = &mut rows[place].signals;
-                *signals = Conditioned { length_m: lines_m[place], displacement_m, speed_m_per_s, ..*signals };
+        let end = start + log.len();
+        if !held.again.get(start..end).is_some_and(|again| again.contains(&true)) {
+            continue;
+        }
+        for (place, row) in rows.iter_mut().enumerate().take(end).skip(start) {
+            let (before, after) = (place.saturating_sub(held.times).max(start), (place + held.times).min(end - 1));
+            let speed = (lengths_m[after] - lengths_m[before]) / (record.time_s(after) - record.time_s(before));
+            if speed.is_finite() {
+                row.signals.speed_m_per_s = speed;
             }
         }
     }
-    Some(rows)
+    Some(CableRecord { rows: &rows, ..*record }.conditioned(limits))
 }
 
 impl Measurements<'_> {
@@ -230,7 +267,8 @@ impl Measurements<'_> {
         let lines =
             |record: CableRecord<'_>| Some(Held::of_reference(&record)?.with_lines(&record, record.references_n));
         let references_n: Vec<Option<Vec<f64>>> = self.cables().map(lines).collect();
-        let rows: Vec<Option<Vec<Row>>> = self.cables().map(|record| rows_with_lines(&record)).collect();
+        let limits = self.robot().monitor().limits();
+        let rows: Vec<Option<Vec<Row>>> = self.cables().map(|record| rows_with_lines(&record, &limits)).collect();
         let wrenches = self.wrenches_with_lines();
         if references_n.iter().all(Option::is_none) && rows.iter().all(Option::is_none) && wrenches.is_none() {
             return None;
@@ -245,7 +283,7 @@ impl Measurements<'_> {
     /// Returns a sentence for each kind of signal that is held, without its full stop. `names` are those of all cables.
     pub(crate) fn repeats_told(&self, names: &[&str]) -> Vec<String> {
         let of = |signal: &'static str, held: Option<Held>, name: &str| {
-            held.map(|held| (signal, significant(held.times()), name.to_owned()))
+            held.map(|held| (signal, held.times, name.to_owned()))
         };
         let of_cable = |(name, record): (&&str, CableRecord<'_>)| {
             let force = Held::of_signal(&record, &record.shown_forces_n());
@@ -259,14 +297,14 @@ impl Measurements<'_> {
         let names = names.get(self.held()).unwrap_or_default();
         let cables = names.iter().zip(self.cables()).flat_map(of_cable).flatten();
         let wrench = of("wrench", self.held_wrenches(), "the platform");
-        let mut told: Vec<(&str, String, Vec<String>)> = Vec::new();
+        let mut told: Vec<(&str, usize, Vec<String>)> = Vec::new();
         for (signal, times, name) in cables.chain(wrench) {
             match told.iter_mut().find(|(other, as_often, _)| *other == signal && *as_often == times) {
                 Some((.., names)) => names.push(name),
                 None => told.push((signal, times, vec![name])),
             }
         }
-        let sentence = |(signal, times, names): (&str, String, Vec<String>)| {
+        let sentence = |(signal, times, names): (&str, usize, Vec<String>)| {
             let names = names.join(", ");
             format!(
                 "{names}: the {signal} is slower than the log, which shows each value {times} times; only the first counts"
@@ -278,8 +316,8 @@ impl Measurements<'_> {
     fn held_wrenches(&self) -> Option<Held> {
         let wrenches = &self.platform().wrenches;
         let is_same = |place: usize| {
-            let pair = wrenches.get(place.wrapping_sub(1)..=place);
-            pair.is_some_and(|pair| pair[0].is_some() && pair[0] == pair[1])
+            let now = wrenches.get(place)?.as_ref()?;
+            Some(wrenches.get(place.wrapping_sub(1)).is_some_and(|before| before.as_ref() == Some(now)))
         };
         Held::of(&self.cables().next()?, is_same)
     }
@@ -319,9 +357,10 @@ mod tests {
     }
 
     fn is_held(shown_n: &[f64]) -> bool {
-        let again = |place: usize| place > 0 && shown_n[place - 1].to_bits() == shown_n[place].to_bits();
-        let again: Vec<bool> = (0..shown_n.len()).map(again).collect();
-        is_regular(&again, 1e-3) && changes_vary(shown_n)
+        let is_same = |place: usize| place > 0 && shown_n[place - 1].to_bits() == shown_n[place].to_bits();
+        let again = |place: usize| shown_n[place].is_finite().then(|| is_same(place));
+        let again: Vec<Option<bool>> = (0..shown_n.len()).map(again).collect();
+        regular_hold(&again, 1e-3).is_some() && changes_vary(shown_n)
     }
 
     #[test]
@@ -338,6 +377,31 @@ mod tests {
         let mut frozen_n = shown_n(1e-5, |_| 1);
         frozen_n[1000..3000].fill(10.0);
         assert_eq!(step(&frozen_n), None);
+    }
+
+    /// A sensor that hangs stands still before it is missing, and often more than once.
+    #[test]
+    fn a_sensor_stands_still_beside_gaps_and_other_stretches() {
+        let mut force_n = shown_n(1e-5, |_| 1);
+        for start in [500, 550, 2000] {
+            let shown_n = force_n[start];
+            force_n[start..start + 20].fill(shown_n);
+        }
+        force_n[2020..2080].fill(f64::NAN);
+        let still = runs(&force_n).filter(|run| force_n[run.start].is_finite() && stands_still(&force_n, run));
+        assert_eq!(still.collect::<Vec<_>>(), [500..520, 550..570, 2000..2020]);
+        // Digits as coarse as the noise repeat a value in a third of the cases.
+        let coarse_n = shown_n(0.02, |_| 1);
+        assert!(!runs(&coarse_n).any(|run| run.len() < 8 && stands_still(&coarse_n, &run)));
+    }
+
+    #[test]
+    fn a_held_signal_may_have_gaps() {
+        let mut force_n = shown_n(1e-5, |_| 4);
+        for start in (100..16_000).step_by(500) {
+            force_n[start..start + 150].fill(f64::NAN);
+        }
+        assert!(is_held(&force_n));
     }
 
     #[test]

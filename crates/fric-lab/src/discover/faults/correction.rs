@@ -9,10 +9,12 @@ use rayon::prelude::*;
 use super::RecordingFault;
 use super::length_noise::{self, LengthNoise};
 use super::timing;
+use crate::fit::cables::{prepared, used};
 use crate::fit::{
     CableFit, CableRecord, FitOptions, Measurements, Progress, SampleStore, StoreError, fit_cables, residuals_n,
 };
 use crate::samples::noise::white_noise_apart;
+use crate::samples::selection::leave_out_warm_up;
 
 /// A fit corrects the time of a reference only if the residual after the correction is at most this multiple of the white noise. Otherwise an effect
 /// may be missing that looks like a late reference. Tuned on 24 simulated logs of others: the two logs with such a fault come to 0.99 and 0.97 of
@@ -152,14 +154,22 @@ fn fit_group(
     let first = cables.into_iter().zip(left_n);
     let again_n = residuals_n(&corrected, &again);
     let again = again.into_iter().zip(again_n);
-    for ((first, again), fault) in first.zip(again).zip(faults) {
-        let fault = fault.filter(|(_, noise_reach)| is_noise(&again.1, *noise_reach));
+    for (((first, again), fault), record) in first.zip(again).zip(faults).zip(corrected.cables()) {
+        let fault = fault.filter(|(_, noise_reach)| is_noise(&judged_n(&record, &again.0, &again.1), *noise_reach));
         let (fit, left_n) = if fault.is_some() { again } else { first };
         all.0.cables.push(fit);
         all.0.faults.push(fault.into_iter().map(|(fault, _)| fault).collect());
         all.1.push(left_n);
     }
     all
+}
+
+/// Returns a fit's residual, NaN in the samples that the fit has not used.
+fn judged_n(record: &CableRecord<'_>, fit: &CableFit, left_n: &[f64]) -> Vec<f64> {
+    let mut standings = prepared(record);
+    leave_out_warm_up(record, &fit.values, &mut standings);
+    let judged = |(left_n, counts): (&f64, bool)| if counts { *left_n } else { f64::NAN };
+    left_n.iter().zip(used(&standings)).map(judged).collect()
 }
 
 /// Whether a residual is little more than white noise, which so many consecutive samples share.

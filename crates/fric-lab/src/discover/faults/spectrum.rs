@@ -100,6 +100,20 @@ impl Times {
     }
 }
 
+/// Returns the mean number of rows from one number of a signal to the next, gaps apart; `None` if most rows have one.
+fn rows_a_number(signal: &[f64]) -> Option<f64> {
+    let places: Vec<usize> = (0..signal.len()).filter(|place| signal[*place].is_finite()).collect();
+    let mut rows: Vec<usize> = places.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    rows.sort_unstable();
+    let median = rows.get(rows.len() / 2).copied().filter(|median| *median > 1)?;
+    // A slow signal comes a row early or late.
+    let usual = rows.partition_point(|rows| *rows < median - 1)..rows.partition_point(|rows| *rows <= median + 1);
+    let usual = rows.get(usual)?;
+    #[expect(clippy::cast_precision_loss, reason = "counts of rows")]
+    let mean = usual.iter().sum::<usize>() as f64 / usual.len() as f64;
+    Some(mean)
+}
+
 /// Mean squares of a signal by frequency.
 pub struct Spectrum {
     /// Of each place, from frequency 0 up; they sum up to the signal's.
@@ -109,9 +123,17 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of a signal with a number for each row, NaN where there is none; `None` where no run is as long as a stretch.
+    /// Of a signal with a number for each row, NaN where there is none; `None` where no run is as long as a stretch. It ends at half the rate of the numbers:
+    /// above it, one in every few rows makes images of what is slow.
     pub fn of(signal: &[f64], times: &Times) -> Option<Self> {
-        Self::watching(signal, times, |_| ())
+        let mut spectrum = Self::watching(signal, times, |_| ())?;
+        if let Some(rows) = rows_a_number(signal) {
+            #[expect(clippy::cast_precision_loss, reason = "a small count")]
+            let most = spectrum.powers.len() as f64 / rows;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "less than the count before")]
+            spectrum.powers.truncate(most as usize);
+        }
+        Some(spectrum)
     }
 
     /// As [`Self::of`]; `watch` is shown the powers of each stretch, in a unit of its own.
