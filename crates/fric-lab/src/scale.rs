@@ -21,11 +21,13 @@ const OF_FORCES: f64 = 0.15;
 const OF_GAIN: f64 = 0.02;
 
 /// Ratio of the force by the sensor to the reference, with its usual cause.
-const CAUSES: [(f64, &str); 6] = [
+const CAUSES: [(f64, &str); 8] = [
     (1.0 / 9.80665, "a sensor in kilograms beside a reference in newtons; give both in newtons"),
     (9.80665, "a sensor in newtons beside a reference in kilograms; give both in newtons"),
     (1e3 / 9.80665, "a sensor in grams beside a reference in newtons; give both in newtons"),
     (9.80665e-3, "a sensor in newtons beside a reference in grams; give both in newtons"),
+    (1.0 / 4.448_221_6, "a sensor in pounds beside a reference in newtons; give both in newtons"),
+    (4.448_221_6, "a sensor in newtons beside a reference in pounds; give both in newtons"),
     (1e-3, "a sensor in kilonewtons beside a reference in newtons; give both in newtons"),
     (1e3, "a sensor in newtons beside a reference in kilonewtons; give both in newtons"),
 ];
@@ -196,6 +198,8 @@ mod tests {
             (1.0 / 9.80665, "a sensor in kilograms"),
             (9.80665, "a reference in kilograms"),
             (1000.0 / 9.80665, "a sensor in grams"),
+            (1.0 / 4.448_221_6, "a sensor in pounds beside a reference in newtons; give both in newtons"),
+            (4.448_221_6, "a sensor in newtons beside a reference in pounds; give both in newtons"),
             (1e-3, "a sensor in kilonewtons"),
             (-1.0, "the other sign"),
         ] {

@@ -13,6 +13,7 @@ use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{check_named_once, find_model, read, watched};
 use crate::output::{self, JsonTarget, Written};
+use crate::warnings::warn_all;
 use fric_work::provenance::shown_path;
 use fric_work::report;
 
@@ -62,6 +63,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let starts: Vec<(String, f64)> = names.zip(samples.log_starts_s()).collect();
     let outcome = DiscoverResult::new(&model.robot, &starts, &readiness, found.cables()).with_wrench(found.wrench());
     outcome.check_told()?;
+    warn_all(&found.warnings(&model.robot.cable_names()));
     let mut files = Vec::new();
     if let Some(file) = extended_file {
         files.push(Written::new(

@@ -45,6 +45,7 @@ use self::faults::timing::Retimed;
 use self::rest::neighbours::neighbours_of;
 
 use crate::fit::{CableRecord, FitError, Progress, Reference, SampleStore, Stages, StoreError};
+use crate::scale;
 
 pub use extended::extended;
 pub use faults::correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
@@ -179,6 +180,12 @@ impl Discoveries {
             Self::Forces(_) => None,
             Self::Wrench(found) => Some(found),
         }
+    }
+
+    /// Returns warnings about cables whose sensor is on another scale than the reference. `names` are those of the cables.
+    #[must_use]
+    pub fn warnings(&self, names: &[&str]) -> Vec<String> {
+        scale::warnings(names.iter().copied().zip(self.cables().iter().map(|cable| cable.scale)))
     }
 
     /// Returns the text of a robot file with the findings; see [`extended`].

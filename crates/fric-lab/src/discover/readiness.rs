@@ -105,7 +105,7 @@ pub fn lack_of_samples(counts: &SampleCounts, interval_s: f64) -> Option<Lack> {
         return Some(Lack::new(cause, LONGER));
     }
     let advice = if without_reference >= flagged {
-        "Look at the reference with `fric-cli info`: where it stands still, it measures nothing."
+        "Where a reference stands still, it measures nothing; a load that stays is `reference = { constant_n = … }` under `[log]`."
     } else {
         "See the flags with `fric-cli replay`."
     };

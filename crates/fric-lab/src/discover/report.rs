@@ -15,6 +15,7 @@ use super::rest::neighbours::Neighbour;
 use super::rest::places::Place;
 use crate::fit::{CableRecord, LogValue, Parameter, SampleCounts};
 use crate::replay::Deviation;
+use crate::scale::Scale;
 
 /// The verdict on a cable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,6 +152,8 @@ pub struct CableDiscovery {
     pub residual_before_n: Vec<f64>,
     /// Residual of the extended model in each cycle, N; NaN where a sample does not count.
     pub residual_after_n: Vec<f64>,
+    /// The forces by the sensor and by the given model beside the reference.
+    pub(crate) scale: Scale,
 }
 
 impl Model {
@@ -212,6 +215,7 @@ impl CableDiscovery {
             times_s: Arc::default(),
             residual_before_n: Vec::new(),
             residual_after_n: Vec::new(),
+            scale: Scale::default(),
         }
     }
 }

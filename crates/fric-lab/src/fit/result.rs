@@ -278,7 +278,10 @@ fn why_unused(left_out: &LeftOut) -> (&'static str, &'static str) {
     } else if flagged >= without_reference {
         ("each is flagged, or has no tension on the cable", "See the flags with `fric-cli replay`.")
     } else {
-        ("none has anything to compare with while its other signals are there", "See the signals with `fric-cli info`.")
+        (
+            "the reference is missing, or stands still, wherever the other signals are there",
+            "See the signals with `fric-cli info`; a load that stays is `reference = { constant_n = … }` under `[log]`.",
+        )
     }
 }
 

@@ -4,8 +4,8 @@
 use fric_core::Wrench;
 
 use super::cable::CableRecord;
+use super::held::repeated_forces;
 use super::record::{Measurements, Row};
-use super::repeats::repeated_forces;
 
 /// A log's reference counts as interpolated if more than this fraction of its moving samples lies on the line between their neighbours. A reference
 /// with few digits at the rate of the cycle has a smaller fraction by chance; so does one measured at more than a third of that rate.

@@ -4,7 +4,8 @@ use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::cable::CableRecord;
 use super::record::Row;
-use super::repeats::{CoarseSteps, runs, stands_still};
+use super::steps::CoarseSteps;
+use super::still::{runs, stands_still};
 
 /// Counts of used samples, and of samples left out by reason. Every sample is counted once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

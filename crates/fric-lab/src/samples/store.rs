@@ -179,8 +179,8 @@ impl<'a> SampleStore<'a> {
     /// # Errors
     /// [`StoreError`] if the temporary file cannot be read.
     pub fn warnings(&self, names: &[&str]) -> Result<Vec<String>, StoreError> {
-        let told = self.groups().map(|group| Ok(self.given(group)?.repeats_told(names)));
-        Ok(told.collect::<Result<Vec<_>, StoreError>>()?.concat())
+        let warnings = self.groups().map(|group| Ok(self.given(group)?.repeat_warnings(names)));
+        Ok(warnings.collect::<Result<Vec<_>, StoreError>>()?.concat())
     }
 
     /// Returns the measurements with the rows of all cables in memory.

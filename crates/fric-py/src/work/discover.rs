@@ -83,6 +83,7 @@ pub fn discover(
     let logs: Vec<(String, f64)> = runs.names().into_iter().zip(samples.log_starts_s()).collect();
     let result = DiscoverResult::new(file, &logs, &readiness, found.cables()).with_wrench(found.wrench());
     result.check_told()?;
+    log::warn(py, &found.warnings(&file.cable_names()))?;
     let text = found.extended(&given.to_toml()?, ORIGIN)?;
     let provenance = Provenance::of_call("fric.discover", &runs.files(), Some((&result.robot, &given.to_toml()?)));
     let page = |provenance: &Provenance| discovery::page(&result, found.cables(), provenance);

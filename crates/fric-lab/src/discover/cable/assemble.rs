@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fric_core::effects::Effect;
-use fric_core::parameters::Values;
+use fric_core::parameters::{OFFSET, Values};
 
 use super::CableLog;
 use super::given::{comparable, judged};
@@ -23,6 +23,7 @@ use crate::discover::workbench::{self, Trial, Workbench};
 use crate::fit::{LogValue, SampleCounts, StoreError};
 use crate::replay::Deviation;
 use crate::samples::record::PerLog;
+use crate::scale::Scale;
 use crate::search::problem::Problem;
 
 impl CableLog<'_> {
@@ -124,6 +125,8 @@ impl CableLog<'_> {
         });
         let curves = curves(&self.record, &residual_before_n, &residual_after_n);
         CableDiscovery {
+            // A table would make up for any scale.
+            scale: self.scale(&residual_before_n, base.values[OFFSET]),
             curves,
             samples,
             reference_variation_n: raw.reference_variation_n(),
@@ -149,6 +152,16 @@ impl CableLog<'_> {
             residual_before_n,
             residual_after_n,
         }
+    }
+
+    /// Returns the forces by the sensor and by a model with this residual beside the reference. A zero at the platform, `offset_n`, is no part of the scale.
+    fn scale(&self, residual_n: &[f64], offset_n: f64) -> Scale {
+        let gain = self.raw.params.frictionless_gain();
+        let mut scale = Scale::new(gain);
+        for ((row, reference_n), residual_n) in self.raw.rows.iter().zip(self.raw.references_n).zip(residual_n) {
+            scale.add(*reference_n, [row.signals.sensor_force_n * gain, residual_n + reference_n - offset_n]);
+        }
+        scale
     }
 
     /// Returns the value of each log of its own in a model, from all samples.

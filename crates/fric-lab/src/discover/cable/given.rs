@@ -10,7 +10,7 @@ use crate::discover::report::{CableDiscovery, Model};
 use crate::discover::workbench::{self, Workbench};
 use crate::fit::{CableRecord, FitOptions, Parameter, Row};
 use crate::replay::Deviation;
-use crate::samples::repeats::repeated_forces;
+use crate::samples::held::repeated_forces;
 use crate::samples::split::split;
 
 /// Returns the sum of squares, N², of the given model over the held-out samples after fitting it to the training samples. Returns `None` where the

@@ -22,9 +22,9 @@ use crate::discover::{Task, rest};
 use crate::effects::Around;
 use crate::fit::{CableRecord, FitOptions, StoreError};
 use crate::samples::conditions::{Condition, conditions, load, time};
-use crate::samples::repeats::CoarseSteps;
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
+use crate::samples::steps::CoarseSteps;
 
 pub use given::{acts, add_corrected_faults, given_to, held_out_squares};
 

@@ -15,8 +15,9 @@ pub mod vibration;
 use std::ops::Range;
 
 use crate::fit::CableRecord;
-use crate::samples::repeats::{CoarseSteps, runs, stands_still};
 use crate::samples::selection::Standing;
+use crate::samples::steps::CoarseSteps;
+use crate::samples::still::{runs, stands_still};
 
 /// Minimum number of samples at the greatest or least force of a log for this force to be the end of the sensor's range, and in usual runs.
 const FEWEST_AT_END: usize = 20;
