@@ -3,8 +3,9 @@
 //! A time error shows in the residual as the rate of the reference: a reference that is late by ε leaves `ε·dF/dt`. Delay and skew are improved
 //! iteratively from this part of the residual, after removing what the model's parameters can compensate. They are kept if the evidence is strong,
 //! weakened by the memory of what they leave, and the model then agrees better on held-out samples. A gain that is wrong, for example, makes
-//! much of a ramp of the load look late, but leaves a rest that lasts; once the gain has its name, nothing is late. An early reference is no such fault:
-//! it indicates a sensor that lags, which concerns the machine.
+//! much of a ramp of the load look late, but leaves a rest that lasts; once the gain has its name, nothing is late. An early reference may also mean
+//! that the sensor lags, which concerns the machine. It is a fault only if the model agrees better with the reference shifted than with the reference
+//! behind a lag of first order, which has the effect of `sensor_lag` without its noise.
 
 use std::sync::atomic::AtomicBool;
 
@@ -16,6 +17,7 @@ use crate::discover::naming::projection::{Columns, Signals, visit_less_projectio
 use crate::discover::workbench::{Model, Trial, Workbench};
 use crate::fit::CableRecord;
 use crate::samples::interpolated::measured;
+use crate::samples::noise::white_noise_apart;
 use crate::samples::split::{Block, split};
 
 /// Minimum relative decrease of the held-out sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
@@ -45,6 +47,24 @@ struct Shift {
     skew: f64,
 }
 
+/// A way in which a reference may be off in time.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// By a constant time.
+    Delay,
+    /// By a time that grows.
+    Skew,
+    /// It is early because the sensor force is behind a lag of first order, with the time constant in place of the delay, negative.
+    Lag,
+}
+
+impl Kind {
+    /// Returns the number of times that determine the shift.
+    fn parameter_count(self) -> usize {
+        if self == Self::Skew { 2 } else { 1 }
+    }
+}
+
 /// A linear step towards the correct time.
 struct Step {
     shift: Shift,
@@ -71,6 +91,14 @@ pub struct Retimed {
     pub fault: RecordingFault,
 }
 
+/// Relative standard error of an estimate of the noise's variance from one sample; that from n samples is the `√n`-th part. It is that of the median over
+/// blocks of [`white_noise_apart`]. An early reference is told from a lag of the sensor by as many standard errors. With half as many a reference that is
+/// early by 5 ms in slow motion is told from a lag, by luck; with twice as many one of 20 ms no longer is.
+const NOISE_ERROR: f64 = 3.2;
+const MANY_ERRORS: f64 = 3.0;
+/// A lag has forgotten a sample of which this fraction is left. At 0.1 or 0.002 the result is the same.
+const FORGOTTEN: f64 = 0.02;
+
 /// Number of samples between which a line and a quadratic B-spline interpolate.
 const LINE_REACH: usize = 2;
 const SPLINE_REACH: usize = 3;
@@ -82,43 +110,55 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
     if record.reference_is_known || record.params.friction().mu <= 0.0 {
         return None;
     }
-    let (counts, start) = given_to(record, stop)?;
     let (blocks, measured) = (split(record), measured(record));
-    let case = Case { record: *record, counts: &counts, blocks: &blocks, measured: &measured, stop };
+    let (counts, start) = given_to(record, stop)?;
+    let case = Case { record: *record, counts: &counts, blocks: &blocks, measured: &measured, start: &start, stop };
     let as_it_is = case.bench(record.references_n).try_one(&start);
-    let first = case.improvement(record.references_n, &as_it_is, true)?;
-    if first.gain < LEAST_GAIN * as_it_is.training {
+    if !case.may_gain(record.references_n, &as_it_is)? {
         return None;
     }
+    // A wrong time takes parameters to their bounds, where a fit then holds them: friction behind an early reference has no viscosity.
+    let near = case.corrected(&as_it_is, Kind::Delay)?;
+    let (counts, start) = given_to(&record.with_references(&near.references_n), stop)?;
+    let case = Case { counts: &counts, start: &start, ..case };
+    let as_it_is = case.bench(record.references_n).try_one(&start);
+    let first = case.improvement(record.references_n, &as_it_is, Kind::Skew)?;
     // The evidence is that of the first steps. A value interpolated between two samples has less noise than either, so that any shift by a fraction of
     // an interval makes the sum of squares smaller. The memory is that of what the whole shift leaves.
-    let is_strong = |first: &Step, corrected: &Corrected, with_skew: bool| {
-        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let count = case.bench(record.references_n).count(false) as f64 / case.inflation(corrected, with_skew)?;
-        let parameters = if with_skew { 2.0 } else { 1.0 };
-        Some(delta_bic(count, 1.0 - first.gain_ratio, parameters) < -STRONG_BIC)
+    #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+    let independent = |corrected: &Corrected, kind: Kind| {
+        Some(case.bench(record.references_n).count(false) as f64 / case.inflation(corrected, kind)?)
     };
-    let late = case.corrected(&as_it_is, false)?;
+    let is_strong = |first: &Step, corrected: &Corrected, kind: Kind| {
+        #[expect(clippy::cast_precision_loss, reason = "one or two")]
+        let parameters = kind.parameter_count() as f64;
+        Some(delta_bic(independent(corrected, kind)?, 1.0 - first.gain_ratio, parameters) < -STRONG_BIC)
+    };
+    let shifted = case.corrected(&as_it_is, Kind::Delay)?;
     // For the same reason a skew looks better than none, so the rest after the delay must still be correlated with the rate.
-    let more = case.improvement(&late.references_n, &late.trial, true)?;
-    let may_be_skewed = more.gain >= LEAST_GAIN * late.trial.training;
-    let skewed = if may_be_skewed { Some(case.corrected(&as_it_is, true)?) } else { None };
+    let may_be_skewed = case.may_gain(&shifted.references_n, &shifted.trial)?;
+    let skewed = if may_be_skewed { Some(case.corrected(&as_it_is, Kind::Skew)?) } else { None };
     let gains = |from: &Trial, to: &Trial| to.held_out < (1.0 - LEAST_GAIN) * from.held_out;
     let fault = |fault, parameters| RecordingFault { fault, parameters, intervals_s: Vec::new() };
     let skewed = skewed.filter(|skewed| skewed.shift.skew.abs() <= MOST_SKEW);
-    let skewed = skewed.filter(|skewed| gains(&late.trial, &skewed.trial) && gains(&as_it_is, &skewed.trial));
+    let skewed = skewed.filter(|skewed| gains(&shifted.trial, &skewed.trial) && gains(&as_it_is, &skewed.trial));
     if let Some(skewed) = skewed
-        && is_strong(&first, &skewed, true)?
+        && is_strong(&first, &skewed, Kind::Skew)?
     {
         let Shift { delay_s, skew } = skewed.shift;
         let fault = fault(Fault::ClockSkew, vec![("skew_ratio", -skew), ("delay_s", delay_s)]);
         return Some(Retimed { references_n: skewed.references_n, noise_reach: SPLINE_REACH, fault });
     }
-    let delay_s = late.shift.delay_s;
-    let first = case.improvement(record.references_n, &as_it_is, false)?;
-    let is_late = delay_s > 0.0 && gains(&as_it_is, &late.trial) && is_strong(&first, &late, false)?;
+    let delay_s = shifted.shift.delay_s;
+    let first = case.improvement(record.references_n, &as_it_is, Kind::Delay)?;
+    if !gains(&as_it_is, &shifted.trial) || !is_strong(&first, &shifted, Kind::Delay)? {
+        return None;
+    }
+    if delay_s < 0.0 && !case.is_no_lag(&shifted, &case.corrected(&as_it_is, Kind::Lag)?)? {
+        return None;
+    }
     let fault = fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)]);
-    is_late.then_some(Retimed { references_n: late.references_n, noise_reach: LINE_REACH, fault })
+    Some(Retimed { references_n: shifted.references_n, noise_reach: LINE_REACH, fault })
 }
 
 /// Whether a fit's residual, N, is correlated with the rate of the reference at all, constantly or growing with time. This check is far cheaper than
@@ -167,6 +207,8 @@ struct Case<'a> {
     counts: &'a [bool],
     blocks: &'a [Block],
     measured: &'a [bool],
+    /// The model from which every fit starts: from that of a wrong time it might not come back.
+    start: &'a Model,
     stop: &'a AtomicBool,
 }
 
@@ -175,20 +217,22 @@ impl<'a> Case<'a> {
     where
         'a: 'b,
     {
-        let Self { record, counts, blocks, measured, stop } = *self;
+        let Self { record, counts, blocks, measured, stop, .. } = *self;
         Workbench { record: record.with_references(references_n), blocks, counts, measured, stop }
     }
 
-    /// Returns the delay, with or without a skew, that leaves the smallest residual.
-    fn corrected(&self, as_it_is: &Trial, with_skew: bool) -> Option<Corrected> {
+    /// Returns the shift of a kind that leaves the smallest residual.
+    fn corrected(&self, as_it_is: &Trial, kind: Kind) -> Option<Corrected> {
         let (mut shift, mut trial) = (Shift::default(), as_it_is.clone());
         let mut references_n = self.record.references_n.to_vec();
         for _ in 0..ROUNDS {
-            let Step { shift: step, .. } = self.improvement(&references_n, &trial, with_skew)?;
+            let Step { shift: step, .. } = self.improvement(&references_n, &trial, kind)?;
             shift = Shift { delay_s: shift.delay_s + step.delay_s, skew: shift.skew + step.skew };
-            references_n = self.shifted(shift);
-            let model: Model = trial.model();
-            trial = self.bench(&references_n).try_one(&model);
+            references_n = match kind {
+                Kind::Lag => self.behind_lag(-shift.delay_s),
+                Kind::Delay | Kind::Skew => self.shifted(shift),
+            };
+            trial = self.bench(&references_n).try_one(self.start);
             let end_s = seconds(&self.record, self.record.rows.len());
             if step.delay_s.abs() + step.skew.abs() * end_s < SMALL * self.record.interval_s {
                 break;
@@ -197,43 +241,67 @@ impl<'a> Case<'a> {
         Some(Corrected { shift, references_n, trial })
     }
 
+    /// Whether the references shifted agree better than those behind a lag. The noise that the lag removes from the references does not count, nor what may
+    /// be an error of its estimate.
+    fn is_no_lag(&self, shifted: &Corrected, lagging: &Corrected) -> Option<bool> {
+        let noise_square = |of: &Corrected, reach: usize| {
+            let bench = self.bench(&of.references_n);
+            let noise_n = white_noise_apart(&bench.measured_of(&bench.residuals_n(&of.trial.values)), reach)?;
+            Some(noise_n * noise_n)
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples, not below 0")]
+        let reach = 1 + (-lagging.shift.delay_s * -FORGOTTEN.ln() / self.record.interval_s).max(0.0) as usize;
+        let [noise, behind] = [noise_square(shifted, LINE_REACH)?, noise_square(lagging, reach)?];
+        let bench = self.bench(&shifted.references_n);
+        #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
+        let [learned, held_out] = [false, true].map(|held_out| bench.count(held_out) as f64);
+        let errors = NOISE_ERROR * std::f64::consts::SQRT_2 / (learned + held_out).sqrt();
+        let is_better = |count: f64, shifted: f64, lagging: f64| {
+            lagging + count * (noise - behind) - shifted > MANY_ERRORS * errors * count * noise
+        };
+        let (shifted, lagging) = (&shifted.trial, &lagging.trial);
+        Some(
+            is_better(learned, shifted.training, lagging.training)
+                && is_better(held_out, shifted.held_out, lagging.held_out),
+        )
+    }
+
+    /// Whether a delay with a skew would reduce the residual notably.
+    fn may_gain(&self, references_n: &[f64], trial: &Trial) -> Option<bool> {
+        Some(self.improvement(references_n, trial, Kind::Skew)?.gain >= LEAST_GAIN * trial.training)
+    }
+
     /// Returns the shift that would reduce the residual most.
-    fn improvement(&self, references_n: &[f64], trial: &Trial, with_skew: bool) -> Option<Step> {
-        let count = 1 + usize::from(with_skew);
+    fn improvement(&self, references_n: &[f64], trial: &Trial, kind: Kind) -> Option<Step> {
+        let count = kind.parameter_count();
         let (mut columns, mut squares) = (Columns::new(count, 0, count), 0.0);
-        self.visit(references_n, trial, with_skew, |rates, residual_n| {
+        self.visit(references_n, trial, kind, |rates, residual_n| {
             columns.add(rates, residual_n);
             squares += if residual_n.is_finite() { residual_n * residual_n } else { 0.0 };
         })?;
-        let (factors, gain) = columns.fit(&[0, 1][..=usize::from(with_skew)])?;
+        let (factors, gain) = columns.fit(&[0, 1][..count])?;
         let shift = Shift { delay_s: -factors[0], skew: factors.get(1).map_or(0.0, |factor| -factor) };
         Some(Step { shift, gain, gain_ratio: gain / squares, columns })
     }
 
     /// Returns the factor by which memory in what another improvement would leave weakens the evidence, at least 1.
-    fn inflation(&self, of: &Corrected, with_skew: bool) -> Option<f64> {
-        let Step { columns, .. } = self.improvement(&of.references_n, &of.trial, with_skew)?;
-        let mut memory = columns.memory(&[0, 1][..=usize::from(with_skew)])?;
-        self.visit(&of.references_n, &of.trial, with_skew, |rates, residual_n| memory.add(rates, residual_n))?;
+    fn inflation(&self, of: &Corrected, kind: Kind) -> Option<f64> {
+        let Step { columns, .. } = self.improvement(&of.references_n, &of.trial, kind)?;
+        let mut memory = columns.memory(&[0, 1][..kind.parameter_count()])?;
+        self.visit(&of.references_n, &of.trial, kind, |rates, residual_n| memory.add(rates, residual_n))?;
         Some(memory.inflations().into_iter().fold(1.0, f64::max))
     }
 
-    /// Visits the samples that count with the rate of the reference, and if wanted its product with the time, and with the residual, each less what the
+    /// Visits the samples that count with the rate of the reference, for a skew also its product with the time, and with the residual, each less what the
     /// model's parameters can compensate.
-    fn visit(
-        &self,
-        references_n: &[f64],
-        trial: &Trial,
-        with_skew: bool,
-        mut visit: impl FnMut(&[f64], f64),
-    ) -> Option<()> {
+    fn visit(&self, references_n: &[f64], trial: &Trial, kind: Kind, mut visit: impl FnMut(&[f64], f64)) -> Option<()> {
         let bench = self.bench(references_n);
         let (left, rate_n_per_s) = (bench.evaluated(&trial.values), rates(&self.record, references_n));
         let signals = || -> Signals<'_> {
             Box::new(|place, numbers| {
                 let rate = rate_n_per_s.get(place).copied().unwrap_or(f64::NAN);
                 numbers.extend([left.residual_n(place), rate]);
-                numbers.extend(with_skew.then(|| rate * seconds(&self.record, place)));
+                numbers.extend((kind == Kind::Skew).then(|| rate * seconds(&self.record, place)));
             })
         };
         let problem = bench.problem(&trial.free, None);
@@ -265,6 +333,26 @@ impl<'a> Case<'a> {
                     given_n.copied().unwrap_or(f64::NAN)
                 };
                 *reference_n = if shift.skew == 0.0 { on_line(at, given_n) } else { on_spline(at, given_n) };
+            }
+        }
+        references_n
+    }
+
+    /// Returns the references behind a lag of first order; NaN in the samples that depend on what was before each log or a gap.
+    fn behind_lag(&self, time_constant_s: f64) -> Vec<f64> {
+        let keeps = (-self.record.interval_s / time_constant_s.max(f64::MIN_POSITIVE)).exp();
+        let mut references_n = self.record.references_n.to_vec();
+        for (start, log) in self.record.logs() {
+            // What is kept of the first sample after a gap, which stands for all before it.
+            let (mut behind_n, mut memory) = (f64::NAN, 1.0);
+            for reference_n in references_n.iter_mut().skip(start).take(log.len()) {
+                if behind_n.is_finite() && reference_n.is_finite() {
+                    behind_n = keeps * behind_n + (1.0 - keeps) * *reference_n;
+                    memory *= keeps;
+                } else {
+                    (behind_n, memory) = (*reference_n, 1.0);
+                }
+                *reference_n = if memory < FORGOTTEN { behind_n } else { f64::NAN };
             }
         }
         references_n

@@ -82,6 +82,8 @@ pub enum Refusal {
     Unjudged,
     /// A parameter is stuck at the bound of its range.
     AtBound,
+    /// The intervals of its parameters hold the values at which it does nothing.
+    Absent,
     /// The log cannot distinguish the effect from the parameter of this name.
     Open(&'static str),
     /// The effect's size differs between operating conditions of this name, so something else is mistaken for it.

@@ -55,6 +55,11 @@ impl FaultResult {
                     newtons(step_n)
                 )
             }
+            Fault::ReferenceDelay if value("delay_s") < 0.0 => format!(
+                "the reference is early by {}, and was put where it belongs; stamp both with one clock where they are measured, and if they are, \
+                 look for what delays the cable forces, because the loop gets them as late",
+                quantity(-value("delay_s"), None, "s")
+            ),
             Fault::ReferenceDelay => format!(
                 "the reference comes late by {}, and was put where it belongs; stamp it where it is measured, or take the filter of its \
                  amplifier into account",
