@@ -214,6 +214,23 @@ fn scatter(values: impl Iterator<Item = f64>) -> f64 {
     if typical.is_finite() { typical } else { 0.0 }
 }
 
+/// Returns the run with common steps taken off its shifts, and these steps; the run as it is if the tension at the base is not known.
+///
+/// # Errors
+/// Returns the errors of [`Gratings::unbridged`].
+pub fn steadied(run: Run, gratings: &Gratings) -> Result<(Run, Vec<Guard>), ContinuumError> {
+    if !run.has_tension() || !run.has_shifts() {
+        return Ok((run, Vec::new()));
+    }
+    let mut tensions = gratings.unbridged(&run)?;
+    let steps = without_common_steps(&run, gratings, &mut tensions);
+    let without = |run: Run, step: &Guard| match step {
+        Guard::CommonStep { time_s, step_nm } => run.without_step(*time_s, *step_nm),
+        Guard::ContradictingGrating { .. } | Guard::BeyondBound { .. } => run,
+    };
+    Ok((steps.iter().fold(run, without), steps))
+}
+
 /// Takes common steps off the tensions, and returns them.
 fn without_common_steps(run: &Run, gratings: &Gratings, tensions: &mut [Vec<Tension>]) -> Vec<Guard> {
     let jumps = Jumps::of(run, gratings, tensions);

@@ -142,6 +142,14 @@ impl Run {
         run
     }
 
+    /// Returns the run with a step taken off the shifts of all gratings from a time on.
+    pub(super) fn without_step(mut self, from_s: f64, step_nm: f64) -> Self {
+        for sample in self.samples.iter_mut().filter(|sample| sample.time_s >= from_s) {
+            sample.shift_nm.iter_mut().for_each(|shift_nm| *shift_nm -= step_nm);
+        }
+        self
+    }
+
     /// Returns the number of disks of the manipulator.
     #[must_use]
     pub fn disk_count(&self) -> usize {

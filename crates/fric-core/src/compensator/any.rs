@@ -42,6 +42,9 @@ pub struct SnapshotMismatch {
 impl fmt::Display for SnapshotMismatch {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { expected, found } = self;
+        if found == expected {
+            return formatter.write_str("the snapshot is incomplete, or of another version of the library");
+        }
         write!(formatter, "the snapshot is of a robot with {found} cables, this one has {expected}")
     }
 }

@@ -51,12 +51,15 @@ impl<const CABLES: usize> TunableCompensator<CABLES> {
     }
 
     /// Takes over the parameters of `next`, not its state, during the next `blend_cycles` (at least 1). Allocation-free and panic-free, for use
-    /// inside the loop, where it costs a copy of the parameters and of the state. During a change the output restarts from the parameters that are
-    /// set, so wait for the end of the change ([`is_changing`](Self::is_changing)).
+    /// inside the loop, where it costs a copy of the parameters and of the state.
     ///
     /// # Errors
-    /// Returns the errors of [`Compensator::check_exchange`]; nothing is changed then.
+    /// Returns the errors of [`Compensator::check_exchange`], and an error as long as a change is not over ([`is_changing`](Self::is_changing)), because
+    /// the output would jump; nothing is changed then.
     pub fn change(&mut self, next: &Compensator<CABLES>, blend_cycles: u32) -> Result<(), ParamError> {
+        if self.is_changing() {
+            return Err(ParamError::conflict("change", "comes before the last one is over; step until it is"));
+        }
         self.running.check_exchange(next)?;
         self.leaving.copy_from(&self.running);
         self.running.take_parameters(next);

@@ -161,7 +161,7 @@ pub struct LeftOut {
 }
 
 /// Numbers by name, in order.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Numbers(pub Vec<(String, f64)>);
 
 impl Numbers {

@@ -12,6 +12,10 @@ const NORM: f64 = 8.366_600_265_340_756;
 /// Number of independent differences that each overlapping difference of a block is worth.
 const INDEPENDENT_RATIO: f64 = 0.3;
 
+/// Relative standard error of the noise variance from one sample; from n samples it is the `√n`-th part. Of a block's mean square it is `√(2/(0.3·n))`, and of a
+/// median 1.25 times that of a mean.
+pub const VARIANCE_ERROR: f64 = 3.2;
+
 /// Returns the ratio of the mean of a χ² distribution to its median, for the overlapping differences of a block: `(1 − 2/(9·n))⁻³`.
 fn mean_per_median(block: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a small count")]

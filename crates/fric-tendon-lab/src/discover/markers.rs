@@ -117,7 +117,7 @@ pub fn residuals(
 }
 
 /// Returns the noise of a distance, from both coordinates of all disks together. Hidden markers are skipped.
-fn noise_m(residual_m: &[Vec<[f64; 2]>]) -> Option<f64> {
+pub fn noise_m(residual_m: &[Vec<[f64; 2]>]) -> Option<f64> {
     let disk_count = residual_m.iter().map(Vec::len).max().unwrap_or(0);
     let mut series = Vec::new();
     for (disk, coordinate) in (0..disk_count).flat_map(|disk| [(disk, 0), (disk, 1)]) {

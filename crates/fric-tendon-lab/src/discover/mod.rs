@@ -31,12 +31,12 @@ mod final_fit;
 pub(super) mod friction;
 mod goes_with;
 mod machine;
-mod markers;
-mod noise;
+pub(super) mod markers;
+pub(super) mod noise;
 mod places;
 mod result;
 mod summary;
-mod worse;
+pub(super) mod worse;
 
 use fric_lab::discover::Verdict;
 use fric_lab::discover::result::DiscoverResult;

@@ -64,6 +64,17 @@ fn common(fit: &Fit) -> Common {
     common
 }
 
+/// Multiple of noise and model error from which a fit that has one μ for all holes leaves too much. Holes that differ by a tenth leave up to 1.3 of it, one
+/// with half as much again 2.4.
+const MISFIT: f64 = 2.0;
+
+/// Whether series of tensions, N, have more in common than noise, the error of the model, and holes that are not alike, for this greatest tension.
+pub fn is_misfit(series: impl Iterator<Item = Vec<f64>>, greatest_tension_n: f64) -> bool {
+    let mut common = Common::default();
+    series.for_each(|series| common.add(&series));
+    common.rms() > MISFIT * common.chance().hypot(PRACTICAL_RATIO * greatest_tension_n)
+}
+
 /// Returns the root mean square of a residual above the noise over training and held-out samples, N. Using both balances what a fit removes from one
 /// and adds to the other.
 pub fn excess_n(fit: &Fit) -> f64 {

@@ -43,7 +43,8 @@ pub fn are_tensions_worse(before: &Fit, after: &Fit) -> bool {
     is_beyond_chance(&squares(before), &squares(after))
 }
 
-fn grown([before, after]: [&[Vec<[f64; 2]>]; 2], noise_m: f64) -> Option<Worse> {
+/// Returns the disk whose distance from its marker grows most, from markers minus disks in each sample before and after, m, and the noise of a distance.
+pub fn grown([before, after]: [&[Vec<[f64; 2]>]; 2], noise_m: f64) -> Option<Worse> {
     let disk_count = before.iter().map(Vec::len).max().unwrap_or(0);
     let of_disk = |rows: &[Vec<[f64; 2]>], disk: usize| -> Vec<f64> {
         let square = |row: &Vec<[f64; 2]>| row.get(disk).map_or(f64::NAN, |[x_m, y_m]| x_m * x_m + y_m * y_m);

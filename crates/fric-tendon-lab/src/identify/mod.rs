@@ -4,6 +4,7 @@
 //! comparison, `least_squares` searches, `errors` computes the intervals). Numbers that the runs do not determine are held as in the file and
 //! reported: they lie along directions with small eigenvalues of the information matrix, as in the identification of cables.
 
+mod attempt;
 pub(super) mod errors;
 pub(super) mod evaluation;
 mod least_squares;
@@ -12,17 +13,16 @@ mod result;
 mod summary;
 pub(super) mod unknown;
 
-use fric_lab::fit::{HALF_INTERVAL, OpenDirection, open_directions};
-use fric_lab::statistics::inverse_of_normal;
 use fric_tendon::edit::{GratingLine, ManipulatorEdit};
 use fric_tendon::file::ManipulatorFile;
-use nalgebra::DMatrix;
 
-use self::evaluation::{Runs, State};
-use self::least_squares::{Solution, solve};
+use self::attempt::Attempt;
+use self::evaluation::Runs;
+use self::least_squares::Solution;
 use super::base_noise::{BaseNoise, steadied};
 use super::error::ContinuumError;
 use super::gratings::Gratings;
+use super::guard;
 use super::run::Run;
 
 pub use quantity::Quantity;
@@ -61,88 +61,39 @@ pub fn identify(
     options: &TendonFitOptions,
 ) -> Result<Identification, ContinuumError> {
     let (runs, base_noise): (Vec<Run>, Vec<Option<BaseNoise>>) = runs.iter().map(steadied).unzip();
-    let mut runs = Runs::new(file, &runs)?;
-    let counts = runs.sample_counts();
+    let (mut runs, mut common_steps) = (runs, Vec::new());
+    if let Some(gratings) = Gratings::from_file(file)? {
+        let steadied = runs.into_iter().map(|run| guard::steadied(run, &gratings));
+        (runs, common_steps) = steadied.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+    }
+    let counts = Runs::new(file, &runs)?.sample_counts();
     let count = counts.iter().sum();
     if count < LEAST_SAMPLES {
         return Err(ContinuumError::TooShort { count, needed: LEAST_SAMPLES });
     }
-    let given = file.tables().clone();
-    let quantities = options.quantities.clone().unwrap_or_else(|| Quantity::usual(&given));
-    let mut unknowns: Vec<Unknown> = quantities.iter().flat_map(|quantity| quantity.unknowns(&given)).collect();
-    let mut undetermined: Vec<Undetermined> = Vec::new();
-    for quantity in &quantities {
-        if quantity.unknowns(&given).is_empty() && *quantity != Quantity::Calibration {
-            undetermined.push(Undetermined::impossible(*quantity));
-        }
+    let given = file.tables();
+    let has_markers = runs.iter().all(Run::has_markers);
+    let quantities = options.quantities.clone().unwrap_or_else(|| Quantity::usual(given, has_markers));
+    let mut found = Attempt::new(file, &runs, &quantities)?;
+    if let Some(worse) = found.worse {
+        // Numbers that move a disk away from its marker stand for something else, or the run hardly shows them. Friction may still be found.
+        let of_friction: Vec<Quantity> = quantities.iter().copied().filter(|one| one.is_friction()).collect();
+        let without = Attempt::new(file, &runs, &of_friction)?;
+        let is_better = without.worse.is_none() && !without.is_misfit;
+        let better = if is_better { without } else { Attempt::new(file, &runs, &[])? };
+        let (mut kept, found_now) = (found.unknowns(), better.unknowns());
+        kept.retain(|unknown| !found_now.contains(unknown));
+        found = better;
+        found.undetermined.insert(0, Undetermined::worse(&kept, &worse));
     }
-    let before = runs.evaluate(&runs.start(&[]), None).ok_or(ContinuumError::NotIdentified)?;
-    let mut start = runs.start(&unknowns);
-    let (solution, covariance) = loop {
-        let solution = solve(&runs, start).ok_or(ContinuumError::NotIdentified)?;
-        let tables = solution.state.tables(&runs.given);
-        if Unknown::TipMass.is_below_range(&runs.given, &solution.state.unknowns) {
-            // A negative mass is noise, or stands for something else.
-            runs.given.tip.mass_kg = 0.0;
-            unknowns.retain(|unknown| *unknown != Unknown::TipMass);
-            undetermined.push(Undetermined::at_bound(Unknown::TipMass));
-            start = runs.start(&unknowns);
-            continue;
-        }
-        if unknowns.is_empty() {
-            break (solution, DMatrix::zeros(0, 0));
-        }
-        let covariance = errors::covariance(&runs, &solution).ok_or(ContinuumError::NotIdentified)?;
-        let widest: Vec<f64> =
-            unknowns.iter().map(|unknown| unknown.widest(&tables, runs.greatest_tension_n)).collect();
-        let Some(direction) = open(&covariance, &widest).into_iter().next() else { break (solution, covariance) };
-        // If the file's value is contradicted, another number must be held.
-        let is_contradicted = |place: &usize| {
-            let distance = solution.state.unknowns.get(*place).map_or(0.0, |(_, distance)| *distance);
-            distance.abs() > HALF_INTERVAL * covariance[(*place, *place)].max(0.0).sqrt()
-        };
-        let parts = direction.parts();
-        let least = parts.iter().min_by_key(|place| (is_contradicted(place), unknowns[**place].rank()));
-        let Some(held) = least.map(|place| unknowns[*place]) else { break (solution, covariance) };
-        let parts: Vec<Unknown> = parts.iter().map(|place| unknowns[*place]).collect();
-        undetermined.push(Undetermined::of(held, &parts));
-        unknowns.retain(|unknown| *unknown != held);
-        start = solution.state;
-        start.unknowns.retain(|(unknown, _)| *unknown != held);
-    };
-    // Errors of the lines that are not written are no part of the fitted file.
-    let as_written = State { lines: runs.start(&[]).lines, ..solution.state.clone() };
-    let written = if quantities.contains(&Quantity::Calibration) {
-        None
-    } else {
-        Some(runs.evaluate(&as_written, Some(&solution.evaluation)).ok_or(ContinuumError::NotIdentified)?)
-    };
-    let after = written.as_ref().unwrap_or(&solution.evaluation);
-    let mut wanted = solution.state.tables(&runs.given);
-    tidy(&given, &mut wanted);
-    let mut edit = ManipulatorEdit::between(&given, &wanted);
+    let mut wanted = found.solution.state.tables(&found.given);
+    tidy(given, &mut wanted);
+    let mut edit = ManipulatorEdit::between(given, &wanted);
     if quantities.contains(&Quantity::Calibration) {
-        edit.lines = lines(file, &solution)?;
+        edit.lines = lines(file, &found.solution)?;
     }
-    let result = TendonFitResult::new(
-        &given,
-        names,
-        &counts,
-        (&before, after),
-        (&unknowns, &wanted, &covariance),
-        undetermined,
-        base_noise,
-    );
+    let result = TendonFitResult::new(given, names, &counts, found, &wanted, (base_noise, common_steps));
     Ok(Identification { result, edit })
-}
-
-/// Returns the directions that the runs leave open, in units of the widest intervals.
-fn open(covariance: &DMatrix<f64>, widest: &[f64]) -> Vec<OpenDirection> {
-    let scaled = DMatrix::from_fn(widest.len(), widest.len(), |row, column| {
-        covariance[(row, column)] / (widest[row] * widest[column])
-    });
-    let silent = DMatrix::from_element(widest.len(), widest.len(), f64::NAN);
-    open_directions(&inverse_of_normal(&scaled).unwrap_or(silent))
 }
 
 /// A frame or a sensor that is as good as none is not written.

@@ -104,9 +104,10 @@ impl Quantity {
         Ok(all)
     }
 
-    /// Returns the quantities that are identified by default.
+    /// Returns the quantities that are identified by default. Without markers these are those of friction: gratings show friction alone, which goes with μ
+    /// and with the angle at a hole, so that another stiffness with another μ has nearly the same tensions.
     #[must_use]
-    pub fn usual(tables: &ManipulatorTables) -> Vec<Self> {
+    pub fn usual(tables: &ManipulatorTables, has_markers: bool) -> Vec<Self> {
         let usual = [
             Self::BackboneStiffness,
             Self::TendonOffset,
@@ -118,9 +119,17 @@ impl Quantity {
             Self::Sigma,
         ];
         // A force on the tip that is no weight is not a default.
-        let is_usual =
-            |quantity: &Self| *quantity != Self::TipLoad || tables.gravity_m_per_s2.iter().any(|part| *part != 0.0);
+        let is_usual = |quantity: &Self| match quantity {
+            of_friction if of_friction.is_friction() => true,
+            Self::TipLoad => has_markers && tables.gravity_m_per_s2.iter().any(|part| *part != 0.0),
+            _ => has_markers,
+        };
         usual.into_iter().filter(|quantity| is_usual(quantity) && !quantity.unknowns(tables).is_empty()).collect()
+    }
+
+    /// Whether it is one of friction, which does not move the disks under the measured tensions.
+    pub(super) fn is_friction(self) -> bool {
+        matches!(self, Self::Mu | Self::HoleMu | Self::Sigma)
     }
 
     /// Returns its numbers; empty if it does not apply to the manipulator.

@@ -2,10 +2,12 @@
 
 use fric_lab::fit::result::Numbers;
 use fric_tendon::file::ManipulatorTables;
-use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::super::base_noise::BaseNoise;
+use super::super::discover::worse::Worse;
+use super::super::guard::Guard;
+use super::attempt::Attempt;
 use super::evaluation::{Evaluation, Row};
 use super::quantity::Quantity;
 use super::unknown::Unknown;
@@ -23,6 +25,8 @@ pub struct TendonFitResult {
     pub samples: Vec<usize>,
     /// Noise that was taken off the tension at the base of each run; null for none.
     pub base_noise: Vec<Option<BaseNoise>>,
+    /// Common steps of the gratings that were taken off, in each run.
+    pub common_steps: Vec<Vec<Guard>>,
     /// Identified values, by key.
     pub parameters: Numbers,
     /// Their standard errors.
@@ -35,6 +39,8 @@ pub struct TendonFitResult {
     pub before: Disagreement,
     /// Errors with the fitted file.
     pub after: Disagreement,
+    /// Whether the fitted file leaves more of the gratings' tensions than noise, so that something else is missing or wrong.
+    pub is_misfit: bool,
 }
 
 /// Numbers that the runs cannot distinguish, or do not determine at all.
@@ -105,6 +111,18 @@ impl Undetermined {
         Self { parameters: vec![unknown.key()], sentence }
     }
 
+    pub(super) fn worse(kept: &[Unknown], worse: &Worse) -> Self {
+        let parameters: Vec<String> = kept.iter().map(|unknown| unknown.key()).collect();
+        let sentence = format!(
+            "a fit of `{}` would move disk {} from {:.2} to {:.2} mm off its marker; they stay as the file states them",
+            parameters.join("`, `"),
+            worse.disk + 1,
+            1e3 * worse.before_m,
+            1e3 * worse.after_m
+        );
+        Self { parameters, sentence }
+    }
+
     pub(super) fn impossible(quantity: Quantity) -> Self {
         let reason = match quantity {
             Quantity::GravityDirection => {
@@ -128,11 +146,11 @@ impl TendonFitResult {
         given: &ManipulatorTables,
         names: &[String],
         samples: &[usize],
-        (before, after): (&Evaluation, &Evaluation),
-        (unknowns, tables, covariance): (&[Unknown], &ManipulatorTables, &DMatrix<f64>),
-        undetermined: Vec<Undetermined>,
-        base_noise: Vec<Option<BaseNoise>>,
+        found: Attempt,
+        tables: &ManipulatorTables,
+        (base_noise, common_steps): (Vec<Option<BaseNoise>>, Vec<Vec<Guard>>),
     ) -> Self {
+        let (unknowns, covariance) = (found.unknowns(), &found.covariance);
         let numbers = |of: &dyn Fn(usize, Unknown) -> f64| {
             Numbers(unknowns.iter().enumerate().map(|(place, unknown)| (unknown.key(), of(place, *unknown))).collect())
         };
@@ -142,14 +160,16 @@ impl TendonFitResult {
             runs: names.to_vec(),
             samples: samples.to_vec(),
             base_noise,
+            common_steps,
             parameters: numbers(&|_, unknown| unknown.value(tables)),
             standard_errors: numbers(&|place, unknown| {
                 unknown.value_per_distance(tables) * covariance[(place, place)].max(0.0).sqrt()
             }),
             given: numbers(&|_, unknown| unknown.value(given)),
-            undetermined,
-            before: Disagreement::of(before),
-            after: Disagreement::of(after),
+            undetermined: found.undetermined,
+            before: Disagreement::of(&found.before),
+            after: Disagreement::of(&found.after),
+            is_misfit: found.is_misfit,
         }
     }
 }

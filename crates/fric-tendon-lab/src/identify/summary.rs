@@ -4,7 +4,12 @@ use fric_lab::fit::HALF_INTERVAL;
 use fric_lab::text::{quantity, table, wrapped};
 
 use super::super::base_noise::BaseNoise;
+use super::super::guard::Guard;
 use super::result::{Disagreement, TendonFitResult};
+
+/// What a fit says that leaves more than noise.
+const MISFIT: &str = "the fitted file leaves more of the gratings' tensions than noise, so something is missing or wrong that the fit does not vary, and \
+                      values and intervals may be off; `fric-cli discover` looks for it";
 
 impl TendonFitResult {
     /// Returns a summary for people.
@@ -37,7 +42,21 @@ impl TendonFitResult {
         for noise in self.noises() {
             text += &wrapped("noise: ", &format!("{noise}."));
         }
+        for step in self.steps() {
+            text += &wrapped("step: ", &format!("{step}."));
+        }
+        if self.is_misfit {
+            text += &wrapped("misfit: ", &format!("{MISFIT}."));
+        }
         text
+    }
+
+    /// Returns one sentence for each common step of the gratings.
+    fn steps(&self) -> impl Iterator<Item = String> {
+        let of_run = |(name, steps): (&String, &Vec<Guard>)| {
+            steps.iter().map(|step| format!("{name}: {}", step.warning())).collect::<Vec<_>>()
+        };
+        self.runs.iter().zip(&self.common_steps).flat_map(of_run)
     }
 
     /// Returns one sentence for each run with noise on the tension at the base.
@@ -47,10 +66,12 @@ impl TendonFitResult {
         self.runs.iter().zip(&self.base_noise).filter_map(of_run)
     }
 
-    /// Returns one sentence for each number that the runs do not determine, and for each run with noise on the tension at the base.
+    /// Returns one sentence for each number that the runs do not determine, for each run with noise on the tension at the base, for each common step of the
+    /// gratings, and for a misfit.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        self.undetermined.iter().map(|open| open.sentence.clone()).chain(self.noises()).collect()
+        let open = self.undetermined.iter().map(|open| open.sentence.clone());
+        open.chain(self.noises()).chain(self.steps()).chain(self.is_misfit.then(|| MISFIT.to_owned())).collect()
     }
 }
 

@@ -6,6 +6,8 @@ use nalgebra::DMatrix;
 
 use super::given::acts;
 use super::{BELIEVED_RATIO, CableLog};
+use crate::candidates::catalogue as candidates;
+use crate::certainty::assumed;
 use crate::discover::effort::Effort;
 use crate::discover::naming::{Naming, Search};
 use crate::discover::rest::places::Place;
@@ -15,7 +17,8 @@ use crate::discover::workbench::{self, Trial, Workbench};
 use crate::fit::{FitOptions, HALF_INTERVAL, Parameter};
 use crate::samples::noise::white_noise_apart;
 use crate::samples::selection::Standing;
-use crate::search::solve::contradicts;
+use crate::search::problem::Problem;
+use crate::search::solve::{Solution, Unknown, contradicts, squares};
 
 /// Maximum number of passes over a cable. Each pass starts from what the previous one found.
 const MOST_PASSES: usize = 3;
@@ -47,6 +50,8 @@ impl Outcome {
 pub(super) struct Fitted {
     pub(super) values: Values,
     pub(super) parameters: Vec<Parameter>,
+    /// Parameters that the samples do not determine.
+    undetermined: Vec<Unknown>,
     pub(super) covariance: DMatrix<f64>,
 }
 
@@ -114,8 +119,40 @@ impl CableLog<'_> {
             naming = if is_new { again } else { naming.followed_by(beyond) };
             fitted = self.fitted(counts, &naming.model, noise_n);
         }
+        while let Some(absent) =
+            naming.effects().into_iter().find(|effect| self.may_be_absent(counts, &fitted, *effect))
+        {
+            search.refuse(absent);
+            naming.named.retain(|named| named.effect != absent);
+            naming = search.run(&naming.effects());
+            fitted = self.fitted(counts, &naming.model, noise_n);
+        }
         let rest = self.rest(&bench, &fitted.model(), self.least_n(&base))?;
         Some(Outcome { counts: counts.to_vec(), effort, base, naming, fitted, rest, stretch: None })
+    }
+
+    /// Whether the intervals of the parameters that make an effect hold the values at which it does nothing. Parameters such as a speed, which do nothing
+    /// by themselves, do not matter; nor does the error by a time that is assumed, which scales an effect and removes none.
+    fn may_be_absent(&self, counts: &[bool], fitted: &Fitted, effect: Effect) -> bool {
+        let bench = self.bench(counts);
+        let all = Problem { used: counts.to_vec(), ..bench.problem(&fitted.parameters, None) };
+        let covariance = &fitted.covariance - assumed::covariance(&all, &[fitted.values], &fitted.undetermined);
+        let of_effect = candidates::fitted(effect);
+        let mut neutral = fitted.values;
+        of_effect.iter().for_each(|parameter| neutral[parameter.place()] = parameter.row().neutral);
+        let squares_without = squares(&all, &[neutral]);
+        let own = fitted.parameters.iter().enumerate().filter(|(_, parameter)| of_effect.contains(parameter));
+        let mut makers = own.filter(|(_, parameter)| {
+            let mut alone = neutral;
+            alone[parameter.place()] = fitted.values[parameter.place()];
+            squares(&all, &[alone]).to_bits() != squares_without.to_bits()
+        });
+        let holds_neutral = |(place, parameter): (usize, &Parameter)| {
+            let off = (fitted.values[parameter.place()] - neutral[parameter.place()]).abs();
+            off <= HALF_INTERVAL * covariance[(place, place)].sqrt()
+        };
+        let first = makers.next();
+        first.is_some_and(holds_neutral) && makers.all(holds_neutral)
     }
 
     /// Names what would be missing if the model with the effects that `search` has found were the given one.
@@ -187,7 +224,8 @@ impl CableLog<'_> {
             let solution =
                 crate::fit::cables::Search::run(&record, &standings, &options, self.stop, gang.seat(0)).solution;
             let parameters = solution.unknowns.iter().map(|unknown| unknown.parameter).collect();
-            Some(Fitted { values: *solution.values.first()?, parameters, covariance: solution.covariance })
+            let Solution { values, undetermined, covariance, .. } = solution;
+            Some(Fitted { values: *values.first()?, parameters, undetermined, covariance })
         };
         let of_file = FitOptions::default().shared(&self.record);
         let of = |also: fn(&Parameter) -> bool| {
@@ -222,7 +260,7 @@ impl CableLog<'_> {
             || {
                 let problem = self.bench(counts).problem(&model.free, None);
                 let covariance = crate::certainty::undetermined::covariance(&problem, &[model.values]);
-                Fitted { values: model.values, parameters: model.free.clone(), covariance }
+                Fitted { values: model.values, parameters: model.free.clone(), undetermined: Vec::new(), covariance }
             },
         )
     }

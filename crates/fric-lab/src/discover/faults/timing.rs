@@ -17,7 +17,7 @@ use crate::discover::naming::projection::{Columns, Signals, visit_less_projectio
 use crate::discover::workbench::{Model, Trial, Workbench};
 use crate::fit::CableRecord;
 use crate::samples::interpolated::measured;
-use crate::samples::noise::white_noise_apart;
+use crate::samples::noise::{VARIANCE_ERROR, white_noise_apart};
 use crate::samples::split::{Block, split};
 
 /// Minimum relative decrease of the held-out sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
@@ -91,10 +91,8 @@ pub struct Retimed {
     pub fault: RecordingFault,
 }
 
-/// Relative standard error of an estimate of the noise's variance from one sample; that from n samples is the `√n`-th part. It is that of the median over
-/// blocks of [`white_noise_apart`]. An early reference is told from a lag of the sensor by as many standard errors. With half as many a reference that is
-/// early by 5 ms in slow motion is told from a lag, by luck; with twice as many one of 20 ms no longer is.
-const NOISE_ERROR: f64 = 3.2;
+/// An early reference is told from a lag of the sensor by so many standard errors of the noise variance. With half as many a reference that is early by
+/// 5 ms in slow motion is told from a lag, by luck; with twice as many one of 20 ms no longer is.
 const MANY_ERRORS: f64 = 3.0;
 /// A lag has forgotten a sample of which this fraction is left. At 0.1 or 0.002 the result is the same.
 const FORGOTTEN: f64 = 0.02;
@@ -255,7 +253,7 @@ impl<'a> Case<'a> {
         let bench = self.bench(&shifted.references_n);
         #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
         let [learned, held_out] = [false, true].map(|held_out| bench.count(held_out) as f64);
-        let errors = NOISE_ERROR * std::f64::consts::SQRT_2 / (learned + held_out).sqrt();
+        let errors = VARIANCE_ERROR * std::f64::consts::SQRT_2 / (learned + held_out).sqrt();
         let is_better = |count: f64, shifted: f64, lagging: f64| {
             lagging + count * (noise - behind) - shifted > MANY_ERRORS * errors * count * noise
         };

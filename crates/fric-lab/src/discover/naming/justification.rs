@@ -10,13 +10,10 @@ use super::rivals::{Chance, Rival, best_rival};
 use super::steadiness::{Portrait, Steadiness};
 use super::{LEAST_SIZE, Named, Refusal, STRONG_BIC, Search, set_of, without};
 use crate::candidates::catalogue::{fitted, has};
-use crate::certainty::undetermined::reported_covariance;
 use crate::discover::rest::WORTH;
 use crate::discover::workbench::Trial;
 use crate::effects;
-use crate::fit::{HALF_INTERVAL, Parameter};
-use crate::search::problem::Problem;
-use crate::search::solve::squares;
+use crate::fit::Parameter;
 use crate::search::vector::Coordinate;
 
 /// A parameter within this fraction of its bound counts as stuck at the bound, by the way from its neutral value.
@@ -136,26 +133,7 @@ impl Search<'_, '_> {
         let noise = (self.noise_n, inflation);
         let portrait = Portrait::of(self.bench, model, &fitted(effect), &neutral, self.conditions, noise)?;
         let is_noise = self.excess(model) <= WORTH;
-        doubt(&portrait, is_noise).or_else(|| self.may_be_absent(model, effect).then_some(Refusal::Absent))
-    }
-
-    /// Whether the reported intervals of the parameters that make an effect hold the values at which it does nothing. Parameters such as a speed or a
-    /// time, which do nothing by themselves, do not matter.
-    fn may_be_absent(&self, model: &Trial, effect: Effect) -> bool {
-        let of_effect = fitted(effect);
-        let all = Problem { used: self.bench.counts.to_vec(), ..self.bench.problem(&model.free, None) };
-        let covariance = reported_covariance(&all, &[model.values], &[]);
-        let mut neutral = model.values;
-        of_effect.iter().for_each(|parameter| neutral[parameter.place()] = parameter.row().neutral);
-        let squares_without = squares(&all, &[neutral]);
-        let is_there = |(place, parameter): (usize, &Parameter)| {
-            let mut alone = neutral;
-            alone[parameter.place()] = model.values[parameter.place()];
-            let off = (alone[parameter.place()] - neutral[parameter.place()]).abs();
-            let makes_it = squares(&all, &[alone]).to_bits() != squares_without.to_bits();
-            makes_it && off > HALF_INTERVAL * covariance[(place, place)].sqrt()
-        };
-        !model.free.iter().enumerate().filter(|(_, parameter)| of_effect.contains(parameter)).any(is_there)
+        doubt(&portrait, is_noise)
     }
 
     /// Returns the parameter that an effect cannot be distinguished from, if the log determines none of the effect's own parameters even with its

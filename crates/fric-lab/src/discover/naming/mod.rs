@@ -35,6 +35,7 @@ use crate::candidates::catalogue::{fitted, has};
 use crate::effects::Around;
 use crate::fit::Parameter;
 use crate::samples::conditions::Condition;
+use crate::samples::noise::VARIANCE_ERROR;
 
 /// Minimum fraction of the remaining squares above the noise that a candidate must remove to enter.
 pub const LEAST_GAIN: f64 = 0.02;
@@ -84,6 +85,8 @@ pub enum Refusal {
     AtBound,
     /// The intervals of its parameters hold the values at which it does nothing.
     Absent,
+    /// What is left without it is no more than noise, as far as the log shows the noise.
+    WithinNoise,
     /// The log cannot distinguish the effect from the parameter of this name.
     Open(&'static str),
     /// The effect's size differs between operating conditions of this name, so something else is mistaken for it.
@@ -151,6 +154,8 @@ pub struct Search<'b, 'a> {
     bench: &'b Workbench<'a>,
     noise_n: f64,
     noise_squares: f64,
+    /// Standard error of the noise variance, as a fraction of it.
+    noise_error: f64,
     around: Around,
     conditions: &'b [Condition<'a>],
     effort: &'b Effort,
@@ -161,6 +166,8 @@ pub struct Search<'b, 'a> {
     earlier: BTreeMap<Set, Trial>,
     /// Refused candidates and the reasons.
     refused: BTreeMap<Effect, Refusal>,
+    /// Candidates that stay refused.
+    absent: Vec<Effect>,
     /// For effects in sets: the factor by which memory weakens the evidence, and the reason why the effect cannot stay.
     judged: BTreeMap<(Set, Effect), (f64, Option<Refusal>)>,
     /// Sets that no unnamed law makes superfluous.
@@ -177,13 +184,15 @@ impl<'b, 'a> Search<'b, 'a> {
         conditions: &'b [Condition<'a>],
         effort: &'b Effort,
     ) -> Self {
-        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let noise_squares = bench.count(true) as f64 * noise_n * noise_n;
+        #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
+        let [learned, held_out] = [false, true].map(|held_out| bench.count(held_out) as f64);
+        let noise_squares = held_out * noise_n * noise_n;
         let fits = BTreeMap::from([(Set::new(), base.clone())]);
         Self {
             bench,
             noise_n,
             noise_squares,
+            noise_error: VARIANCE_ERROR / (learned + held_out).sqrt(),
             around,
             conditions,
             effort,
@@ -191,6 +200,7 @@ impl<'b, 'a> Search<'b, 'a> {
             fits,
             earlier: BTreeMap::new(),
             refused: BTreeMap::new(),
+            absent: Vec::new(),
             judged: BTreeMap::new(),
             unrivalled: BTreeSet::new(),
         }
@@ -204,7 +214,13 @@ impl<'b, 'a> Search<'b, 'a> {
             (set.iter().copied().filter(|effect| !found.contains(effect)).collect(), trial.clone())
         };
         let earlier = self.fits.iter().filter(is_beside).map(beside).collect();
-        Self { earlier, ..Self::new(self.bench, noise_n, around, base, self.conditions, self.effort) }
+        let absent = self.absent.clone();
+        Self { earlier, absent, ..Self::new(self.bench, noise_n, around, base, self.conditions, self.effort) }
+    }
+
+    /// Refuses an effect from now on: by the reported intervals it may not be there.
+    pub fn refuse(&mut self, absent: Effect) {
+        self.absent.push(absent);
     }
 
     /// Names the effects that the model lacks. Effects that were found before are in the model from the start and must justify themselves like the
@@ -241,13 +257,14 @@ impl<'b, 'a> Search<'b, 'a> {
         self.effort.is_spent(self.given_count + found.len())
     }
 
-    /// Returns the candidates that no log like this one can justify.
+    /// Returns the candidates that no log like this one can justify, and those that may not be there.
     fn beyond_the_log(&self) -> BTreeMap<Effect, Refusal> {
+        let absent = self.absent.iter().map(|effect| (*effect, Refusal::Absent));
         if self.bench.knows_load(self.noise_n) {
-            return BTreeMap::new();
+            return absent.collect();
         }
         let of_the_curve = [Effect::SensorGain, Effect::SensorNonlinearity];
-        of_the_curve.into_iter().map(|effect| (effect, Refusal::Open("offset_n"))).collect()
+        absent.chain(of_the_curve.into_iter().map(|effect| (effect, Refusal::Open("offset_n")))).collect()
     }
 
     /// Adds candidates and tests whether they can stay, until nothing changes. A candidate that cannot stay is set aside, and the next one is tried.
@@ -356,12 +373,16 @@ impl<'b, 'a> Search<'b, 'a> {
         best(others.filter(|(other, _)| is_rival(other)).collect::<Vec<_>>())
     }
 
-    /// Returns the candidates that help a model but do not suffice, the best first.
+    /// Returns the candidates that help a model but do not suffice, the best first. Where only the error of the noise's estimate leaves room for them,
+    /// these are the candidates with strong evidence.
     fn tried(&mut self, found: &[Effect]) -> Vec<Tried> {
         let model = self.fit(found);
-        if self.excess(&model) <= NEGLIGIBLE {
+        let excess = self.excess(&model);
+        if excess <= NEGLIGIBLE - self.noise_error {
             return Vec::new();
         }
+        let is_within_noise = excess <= NEGLIGIBLE;
+        let least_evidence = if is_within_noise { -STRONG_BIC } else { 0.0 };
         let (enough, cycle_s) = (self.least_gain(&model), self.bench.record.cycle_s);
         let mut tried: Vec<Tried> = self
             .round(found)
@@ -377,12 +398,14 @@ impl<'b, 'a> Search<'b, 'a> {
                     Refusal::Weak
                 } else if !gains(&model, &trial, enough) {
                     Refusal::Small
+                } else if is_within_noise {
+                    Refusal::WithinNoise
                 } else {
                     Refusal::Unjudged
                 };
                 Tried { effect, trial, inflation, refusal }
             })
-            .filter(|tried| self.delta_bic(&model, &tried.trial, tried.inflation) < 0.0)
+            .filter(|tried| self.delta_bic(&model, &tried.trial, tried.inflation) < least_evidence)
             .collect();
         tried.sort_by(|one, other| one.trial.training.total_cmp(&other.trial.training));
         tried

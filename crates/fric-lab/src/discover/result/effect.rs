@@ -7,6 +7,7 @@ use super::cable::gap_closed;
 use super::finite;
 use super::machine::{Machine, Robot, is_absent};
 use super::table::TableResult;
+use crate::discover::naming::Refusal;
 use crate::discover::report::{self, CableDiscovery, Finding, Tried};
 use crate::discover::rest::empirical;
 use crate::fit::Parameter;
@@ -79,6 +80,9 @@ pub struct TriedResult {
     pub evidence: Evidence,
     /// The reason why it is not named, as a clause.
     pub reason: String,
+    /// Whether the evidence is strong, but the noise is not known well enough.
+    #[serde(skip)]
+    pub is_within_noise: bool,
 }
 
 /// A single effect beside the given model.
@@ -142,6 +146,7 @@ impl TriedResult {
     pub(super) fn of(tried: &Tried) -> Self {
         let Tried { effect, delta_bic, held_out_rms_n, refusal } = tried;
         let evidence = Evidence { delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) };
-        Self { kind: effect.kind(), parameters: None, evidence, reason: refusal.in_words() }
+        let is_within_noise = *refusal == Refusal::WithinNoise;
+        Self { kind: effect.kind(), parameters: None, evidence, reason: refusal.in_words(), is_within_noise }
     }
 }

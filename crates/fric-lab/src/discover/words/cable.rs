@@ -133,6 +133,11 @@ impl DiscoverCableResult {
         let wander_n = self.wander_n.filter(|wander_n| *wander_n > 0.0).map(newtons);
         let mut text = match (self.verdict, kinds.as_slice()) {
             ("complete", _) if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
+            ("complete", _) if self.tried.iter().any(|tried| tried.is_within_noise) => {
+                "With values fitted to the log, the model agrees with it to the noise, as far as so few samples show the noise. \
+                 A longer log would tell whether something small is missing."
+                    .to_owned()
+            }
             ("complete", _) => {
                 "Nothing is missing: with values fitted to the log, the model agrees with it to the noise.".to_owned()
             }

@@ -121,6 +121,9 @@ impl Refusal {
             }
             Self::Unjudged => "the search ended before it was judged".to_owned(),
             Self::AtBound => "its parameter runs to the end of its range".to_owned(),
+            Self::WithinNoise => {
+                "what is left without it is no more than noise, as far as so few samples show the noise".to_owned()
+            }
             Self::Absent => "its interval holds the value at which it does nothing".to_owned(),
             Self::Open(other) => format!("the log cannot tell it from {}", name_of(other)),
             Self::Unsteady(signal) => {

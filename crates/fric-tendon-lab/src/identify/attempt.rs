@@ -1,0 +1,136 @@
+//! One search for some quantities, until every number that it finds is determined by the runs.
+
+use fric_lab::fit::{HALF_INTERVAL, OpenDirection, open_directions};
+use fric_lab::statistics::inverse_of_normal;
+use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
+use nalgebra::DMatrix;
+
+use super::errors;
+use super::evaluation::{Evaluation, Row, RunEvaluation, Runs};
+use super::least_squares::{Solution, solve};
+use super::quantity::Quantity;
+use super::result::Undetermined;
+use super::unknown::Unknown;
+use crate::discover::markers::noise_m;
+use crate::discover::noise::is_misfit;
+use crate::discover::worse::{Worse, grown};
+use crate::error::ContinuumError;
+use crate::run::Run;
+
+/// The outcome of a search.
+pub struct Attempt {
+    /// The given numbers; a mass on the tip that would come out below zero is taken as 0.
+    pub given: ManipulatorTables,
+    /// The prediction of the given file.
+    pub before: Evaluation,
+    /// The prediction of the fitted file.
+    pub after: Evaluation,
+    /// Unless the lines are fitted, their errors are no part of the fitted file.
+    pub solution: Solution,
+    pub covariance: DMatrix<f64>,
+    pub undetermined: Vec<Undetermined>,
+    /// The disk that it moves away from its marker.
+    pub worse: Option<Worse>,
+    /// Whether it leaves more of the gratings' tensions than noise and unlike holes.
+    pub is_misfit: bool,
+}
+
+impl Attempt {
+    /// Searches for the numbers of some quantities.
+    ///
+    /// # Errors
+    /// Returns the errors of [`Runs::new`], or [`ContinuumError::NotIdentified`] if the model has no shapes for the runs.
+    pub fn new(file: &ManipulatorFile, runs: &[Run], quantities: &[Quantity]) -> Result<Self, ContinuumError> {
+        let mut runs = Runs::new(file, runs)?;
+        let mut unknowns: Vec<Unknown> =
+            quantities.iter().flat_map(|quantity| quantity.unknowns(file.tables())).collect();
+        let mut undetermined: Vec<Undetermined> = Vec::new();
+        for quantity in quantities {
+            if quantity.unknowns(file.tables()).is_empty() && *quantity != Quantity::Calibration {
+                undetermined.push(Undetermined::impossible(*quantity));
+            }
+        }
+        let before = runs.evaluate(&runs.start(&[]), None).ok_or(ContinuumError::NotIdentified)?;
+        let mut start = runs.start(&unknowns);
+        let (solution, covariance) = loop {
+            let solution = solve(&runs, start).ok_or(ContinuumError::NotIdentified)?;
+            let tables = solution.state.tables(&runs.given);
+            if Unknown::TipMass.is_below_range(&runs.given, &solution.state.unknowns) {
+                // A negative mass is noise, or stands for something else.
+                runs.given.tip.mass_kg = 0.0;
+                unknowns.retain(|unknown| *unknown != Unknown::TipMass);
+                undetermined.push(Undetermined::at_bound(Unknown::TipMass));
+                start = runs.start(&unknowns);
+                continue;
+            }
+            if unknowns.is_empty() {
+                break (solution, DMatrix::zeros(0, 0));
+            }
+            let covariance = errors::covariance(&runs, &solution).ok_or(ContinuumError::NotIdentified)?;
+            let widest: Vec<f64> =
+                unknowns.iter().map(|unknown| unknown.widest(&tables, runs.greatest_tension_n)).collect();
+            let Some(direction) = open(&covariance, &widest).into_iter().next() else { break (solution, covariance) };
+            // If the file's value is contradicted, another number must be held.
+            let is_contradicted = |place: &usize| {
+                let distance = solution.state.unknowns.get(*place).map_or(0.0, |(_, distance)| *distance);
+                distance.abs() > HALF_INTERVAL * covariance[(*place, *place)].max(0.0).sqrt()
+            };
+            let parts = direction.parts();
+            let least = parts.iter().min_by_key(|place| (is_contradicted(place), unknowns[**place].rank()));
+            let Some(held) = least.map(|place| unknowns[*place]) else { break (solution, covariance) };
+            let parts: Vec<Unknown> = parts.iter().map(|place| unknowns[*place]).collect();
+            undetermined.push(Undetermined::of(held, &parts));
+            unknowns.retain(|unknown| *unknown != held);
+            start = solution.state;
+            start.unknowns.retain(|(unknown, _)| *unknown != held);
+        };
+        let mut as_written = solution.state.clone();
+        if !quantities.contains(&Quantity::Calibration) {
+            as_written.lines = runs.start(&[]).lines;
+        }
+        let after = runs.evaluate(&as_written, Some(&solution.evaluation)).ok_or(ContinuumError::NotIdentified)?;
+        Ok(Self {
+            worse: worse_disk(&before, &after),
+            is_misfit: is_misfit(gratings_left_n(&solution.evaluation), runs.greatest_tension_n),
+            given: runs.given,
+            before,
+            after,
+            solution,
+            covariance,
+            undetermined,
+        })
+    }
+
+    /// Returns the numbers that were found.
+    pub fn unknowns(&self) -> Vec<Unknown> {
+        self.solution.state.unknowns.iter().map(|(unknown, _)| *unknown).collect()
+    }
+}
+
+/// Returns the disk that a fit moves away from its marker, if there is one.
+fn worse_disk(before: &Evaluation, after: &Evaluation) -> Option<Worse> {
+    let places = |evaluation: &Evaluation| -> Vec<Vec<[f64; 2]>> {
+        let of_row = |row: &Row| row.marker_m.chunks_exact(2).map(|place| [place[0], place[1]]).collect();
+        evaluation.runs.iter().flat_map(|run| run.rows.iter().map(of_row)).collect()
+    };
+    let (before, after) = (places(before), places(after));
+    grown([&before, &after], noise_m(&before)?)
+}
+
+/// Returns what a model leaves of the tension at each grating of each run, N, sample by sample.
+fn gratings_left_n(found: &Evaluation) -> impl Iterator<Item = Vec<f64>> + '_ {
+    let of_grating = |run: &RunEvaluation, grating: usize| -> Vec<f64> {
+        run.rows.iter().map(|row| row.tension_n.get(grating).copied().unwrap_or(f64::NAN)).collect()
+    };
+    let gratings = |run: &RunEvaluation| run.rows.iter().map(|row| row.tension_n.len()).max().unwrap_or(0);
+    found.runs.iter().flat_map(move |run| (0..gratings(run)).map(move |grating| of_grating(run, grating)))
+}
+
+/// Returns the directions that the runs leave open, in units of the widest intervals.
+fn open(covariance: &DMatrix<f64>, widest: &[f64]) -> Vec<OpenDirection> {
+    let scaled = DMatrix::from_fn(widest.len(), widest.len(), |row, column| {
+        covariance[(row, column)] / (widest[row] * widest[column])
+    });
+    let silent = DMatrix::from_element(widest.len(), widest.len(), f64::NAN);
+    open_directions(&inverse_of_normal(&scaled).unwrap_or(silent))
+}
