@@ -444,3 +444,16 @@ fn a_wrong_mass_is_found_by_the_weight_and_written() {
     let page = String::from_utf8(place.read("report.html")).unwrap();
     assert!(page.contains("The robot file's mass_kg is wrong"));
 }
+
+#[test]
+fn what_hides_in_the_noise_of_a_short_log_is_told() {
+    let effect = ["--duration", "15", "--seed", "2", "--effect", "stribeck:ratio=0.5,velocity_m_per_s=0.02"];
+    let slow = bench_robot().replace("0.001", "0.004");
+    let place = with(simulated(&slow, &effect));
+    place.write("robot.toml", slow);
+    let run = place.run(&["discover", "log.mcap", "--model", "robot.toml", "--json", "found.json"]).succeeds();
+    let cable = place.json("found.json")["cables"][0].clone();
+    assert_eq!((cable["verdict"].as_str(), cable["tried"][0]["kind"].as_str()), (Some("complete"), Some("stribeck")));
+    assert!(cable["tried"][0]["evidence"]["delta_bic"].as_f64().unwrap() < -30.0, "{cable}");
+    assert!(run.stdout.contains("A longer log would") && !run.stdout.contains("Nothing is missing"), "{}", run.stdout);
+}

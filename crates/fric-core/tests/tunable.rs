@@ -135,6 +135,25 @@ fn a_change_of_the_robot_is_refused_and_changes_nothing() {
     assert_eq!(output, fresh.step(&input(0)));
 }
 
+#[test]
+fn a_change_before_the_last_one_is_over_is_refused() {
+    let (mut tunable, mut undisturbed) = (TunableCompensator::new(old()), TunableCompensator::new(old()));
+    let (mut output, mut expected) = (CycleOutput::default(), CycleOutput::default());
+    for cycle in 0..300 {
+        if cycle == 100 {
+            [&mut tunable, &mut undisturbed].map(|one| one.change(&new(), 50).unwrap());
+        }
+        if (101..150).contains(&cycle) {
+            let error = tunable.change(&old(), 1).unwrap_err().to_string();
+            assert!(error.starts_with("`change` comes before the last one is over"), "{error}");
+        }
+        tunable.step_into(&input(cycle), &mut output);
+        undisturbed.step_into(&input(cycle), &mut expected);
+        assert_eq!(output, expected);
+    }
+    tunable.change(&old(), 1).unwrap();
+}
+
 /// A robot's parameters live as long as the closure.
 #[expect(clippy::unwrap_used, reason = "a test")]
 fn with_robot<T>(mu: f64, work: impl FnOnce(&RobotParams<'_>) -> T) -> T {

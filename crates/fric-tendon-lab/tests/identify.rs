@@ -125,3 +125,60 @@ fn what_cannot_be_compared_is_refused() {
     assert!(Quantity::all_named(["stifness"]).unwrap_err().contains("unknown quantity"));
     assert!(Quantity::all_named(["mu", "hole_mu"]).unwrap_err().contains("name one of them"));
 }
+
+/// What is found by default.
+fn usual(text: &str, samples: &[RunSample]) -> Identification {
+    let file = ManipulatorFile::parse(text, "arm").unwrap();
+    let run = Run::new(samples.to_vec(), 8).unwrap();
+    identify(&file, &[run], &["run".to_owned()], &TendonFitOptions::default()).unwrap()
+}
+
+#[test]
+fn without_markers_only_friction_is_looked_for() {
+    let (text, samples) = run_of(PROTOTYPE, PROTOTYPE, Experiment::Mixed, 45);
+    let dark: Vec<RunSample> =
+        samples.iter().map(|sample| RunSample { marker_m: Vec::new(), ..sample.clone() }).collect();
+    let found = usual(&text, &dark);
+    let keys: Vec<&str> = found.result.parameters.0.iter().map(|(key, _)| key.as_str()).collect();
+    assert!(keys.iter().all(|key| ["mu", "sigma_n_per_m"].contains(key)) && keys.contains(&"mu"), "{keys:?}");
+    assert!(off(&found, "mu", 0.1753).abs() < 2.0);
+    assert!(shape_mm(&text, &found, &samples) < 0.35);
+}
+
+#[test]
+fn a_common_step_of_the_gratings_is_taken_off() {
+    let (text, samples) = run_of(PROTOTYPE, PROTOTYPE, Experiment::Mixed, 46);
+    let mut warm = samples.clone();
+    for sample in warm.iter_mut().filter(|sample| sample.time_s >= 9.0) {
+        sample.shift_nm.iter_mut().for_each(|shift_nm| *shift_nm += 0.056);
+    }
+    let [found, plain] = [&warm, &samples].map(|samples| usual(&text, samples));
+    assert_eq!((found.result.common_steps[0].len(), plain.result.common_steps[0].len()), (1, 0));
+    // What is left of the step is its error, of a grating's noise.
+    let mu = |of: &Identification| of.result.parameters.get("mu").unwrap();
+    assert!((mu(&found) / mu(&plain) - 1.0).abs() < 0.02, "{} {}", mu(&found), mu(&plain));
+    assert!(!found.result.is_misfit && !plain.result.is_misfit);
+    assert!(
+        shape_mm(&text, &found, &warm) < 0.35,
+        "{} {}",
+        shape_mm(&text, &found, &warm),
+        shape_mm(&text, &plain, &samples)
+    );
+}
+
+#[test]
+fn nothing_is_written_that_moves_disks_off_their_markers() {
+    let (text, mut samples) = run_of(PROTOTYPE, PROTOTYPE, Experiment::Mixed, 47);
+    samples.iter_mut().for_each(|sample| sample.tension_base_n *= 1.05);
+    let found = usual(&text, &samples);
+    assert!(found.result.parameters.0.is_empty() && found.result.is_misfit);
+    assert_eq!(rewrite(&text, "arm", &found.edit).unwrap(), text);
+    assert!(
+        found.result.undetermined[0].sentence.contains("off its marker"),
+        "{}",
+        found.result.undetermined[0].sentence
+    );
+    // With the gain among the numbers it is found.
+    let found = identified(&text, &samples, &["base_gain", "mu"]);
+    assert!(off(&found, "base_gain", 1.05).abs() < 2.0 && !found.result.is_misfit);
+}

@@ -234,6 +234,23 @@ fn a_late_reference_is_put_where_it_belongs_and_hides_no_effect() {
 }
 
 #[test]
+fn an_early_reference_is_told_and_a_sensor_that_lags_is_none() {
+    let (mut points, truth) = points_of(&Case { seed: 70_021, ..Case::of(Group::Nothing) });
+    with_late_reference(&mut points, |_| -30.0);
+    let found = look(&[&points], &truth);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    let (key, told_s) = fault.parameters[0];
+    assert_eq!((fault.fault, key, found.findings.len()), (Fault::ReferenceDelay, "delay_s", 0));
+    assert!((told_s / -30e-3 - 1.0).abs() < 0.05, "{told_s}");
+    assert_eq!(found.verdict, Verdict::Complete, "{:?}", found.unexplained);
+
+    let (points, truth) = points_of(&Case { seed: 70_022, ..Case::hiding(Group::Single, &[Effect::SensorLag]) });
+    let found = look(&[&points], &truth);
+    let kinds: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+    assert_eq!((kinds, found.faults.len()), (vec![Effect::SensorLag], 0), "{:?}", found.faults);
+}
+
+#[test]
 fn a_clock_that_runs_otherwise_is_told() {
     let (mut points, truth) = points_of(&Case { seed: 70_019, ..Case::of(Group::Nothing) });
     with_late_reference(&mut points, |cycle| -4e-4 * f64::from(u32::try_from(cycle).unwrap()));

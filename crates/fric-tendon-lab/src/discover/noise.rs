@@ -68,11 +68,17 @@ fn common(fit: &Fit) -> Common {
 /// with half as much again 2.4.
 const MISFIT: f64 = 2.0;
 
-/// Whether series of tensions, N, have more in common than noise, the error of the model, and holes that are not alike, for this greatest tension.
-pub fn is_misfit(series: impl Iterator<Item = Vec<f64>>, greatest_tension_n: f64) -> bool {
+/// Whether series of tensions, N, one a grating, have more in common than noise, the error of the model, holes that are not alike, and the error of common
+/// steps that were taken off, for this greatest tension.
+pub fn is_misfit(series: &[Vec<f64>], greatest_tension_n: f64, step_count: usize) -> bool {
     let mut common = Common::default();
-    series.for_each(|series| common.add(&series));
-    common.rms() > MISFIT * common.chance().hypot(PRACTICAL_RATIO * greatest_tension_n)
+    series.iter().for_each(|series| common.add(series));
+    // The size of a step is known from the change between two samples of all gratings.
+    #[expect(clippy::cast_precision_loss, reason = "small counts")]
+    let of_steps =
+        (2.0 * step_count as f64 / series.len().max(1) as f64).sqrt() * (common.squares / common.count.max(1.0)).sqrt();
+    let model_n = PRACTICAL_RATIO * greatest_tension_n;
+    common.rms() > MISFIT * common.chance().hypot(model_n).hypot(of_steps)
 }
 
 /// Returns the root mean square of a residual above the noise over training and held-out samples, N. Using both balances what a fit removes from one

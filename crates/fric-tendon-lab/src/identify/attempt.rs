@@ -36,11 +36,16 @@ pub struct Attempt {
 }
 
 impl Attempt {
-    /// Searches for the numbers of some quantities.
+    /// Searches for the numbers of some quantities, in runs from which so many common steps of the gratings were taken off.
     ///
     /// # Errors
     /// Returns the errors of [`Runs::new`], or [`ContinuumError::NotIdentified`] if the model has no shapes for the runs.
-    pub fn new(file: &ManipulatorFile, runs: &[Run], quantities: &[Quantity]) -> Result<Self, ContinuumError> {
+    pub fn new(
+        file: &ManipulatorFile,
+        runs: &[Run],
+        quantities: &[Quantity],
+        step_count: usize,
+    ) -> Result<Self, ContinuumError> {
         let mut runs = Runs::new(file, runs)?;
         let mut unknowns: Vec<Unknown> =
             quantities.iter().flat_map(|quantity| quantity.unknowns(file.tables())).collect();
@@ -91,7 +96,7 @@ impl Attempt {
         let after = runs.evaluate(&as_written, Some(&solution.evaluation)).ok_or(ContinuumError::NotIdentified)?;
         Ok(Self {
             worse: worse_disk(&before, &after),
-            is_misfit: is_misfit(gratings_left_n(&solution.evaluation), runs.greatest_tension_n),
+            is_misfit: is_misfit(&gratings_left_n(&solution.evaluation), runs.greatest_tension_n, step_count),
             given: runs.given,
             before,
             after,
@@ -118,12 +123,12 @@ fn worse_disk(before: &Evaluation, after: &Evaluation) -> Option<Worse> {
 }
 
 /// Returns what a model leaves of the tension at each grating of each run, N, sample by sample.
-fn gratings_left_n(found: &Evaluation) -> impl Iterator<Item = Vec<f64>> + '_ {
+fn gratings_left_n(found: &Evaluation) -> Vec<Vec<f64>> {
     let of_grating = |run: &RunEvaluation, grating: usize| -> Vec<f64> {
         run.rows.iter().map(|row| row.tension_n.get(grating).copied().unwrap_or(f64::NAN)).collect()
     };
     let gratings = |run: &RunEvaluation| run.rows.iter().map(|row| row.tension_n.len()).max().unwrap_or(0);
-    found.runs.iter().flat_map(move |run| (0..gratings(run)).map(move |grating| of_grating(run, grating)))
+    found.runs.iter().flat_map(|run| (0..gratings(run)).map(move |grating| of_grating(run, grating))).collect()
 }
 
 /// Returns the directions that the runs leave open, in units of the widest intervals.

@@ -74,13 +74,15 @@ pub fn identify(
     let given = file.tables();
     let has_markers = runs.iter().all(Run::has_markers);
     let quantities = options.quantities.clone().unwrap_or_else(|| Quantity::usual(given, has_markers));
-    let mut found = Attempt::new(file, &runs, &quantities)?;
+    let step_count = common_steps.iter().map(Vec::len).sum();
+    let attempt = |quantities: &[Quantity]| Attempt::new(file, &runs, quantities, step_count);
+    let mut found = attempt(&quantities)?;
     if let Some(worse) = found.worse {
         // Numbers that move a disk away from its marker stand for something else, or the run hardly shows them. Friction may still be found.
         let of_friction: Vec<Quantity> = quantities.iter().copied().filter(|one| one.is_friction()).collect();
-        let without = Attempt::new(file, &runs, &of_friction)?;
+        let without = attempt(&of_friction)?;
         let is_better = without.worse.is_none() && !without.is_misfit;
-        let better = if is_better { without } else { Attempt::new(file, &runs, &[])? };
+        let better = if is_better { without } else { attempt(&[])? };
         let (mut kept, found_now) = (found.unknowns(), better.unknowns());
         kept.retain(|unknown| !found_now.contains(unknown));
         found = better;

@@ -139,7 +139,9 @@ impl CableLog<'_> {
         let covariance = &fitted.covariance - assumed::covariance(&all, &[fitted.values], &fitted.undetermined);
         let of_effect = candidates::fitted(effect);
         let mut neutral = fitted.values;
-        of_effect.iter().for_each(|parameter| neutral[parameter.place()] = parameter.row().neutral);
+        for parameter in &of_effect {
+            neutral[parameter.place()] = parameter.row().neutral;
+        }
         let squares_without = squares(&all, &[neutral]);
         let own = fitted.parameters.iter().enumerate().filter(|(_, parameter)| of_effect.contains(parameter));
         let mut makers = own.filter(|(_, parameter)| {

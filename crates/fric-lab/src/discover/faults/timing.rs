@@ -249,13 +249,15 @@ impl<'a> Case<'a> {
         };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples, not below 0")]
         let reach = 1 + (-lagging.shift.delay_s * -FORGOTTEN.ln() / self.record.interval_s).max(0.0) as usize;
-        let [noise, behind] = [noise_square(shifted, LINE_REACH)?, noise_square(lagging, reach)?];
+        let noise = noise_square(shifted, LINE_REACH)?;
+        // Over so many samples a rest that is no noise looks like it.
+        let removed = (noise - noise_square(lagging, reach)?).max(0.0);
         let bench = self.bench(&shifted.references_n);
         #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
         let [learned, held_out] = [false, true].map(|held_out| bench.count(held_out) as f64);
         let errors = VARIANCE_ERROR * std::f64::consts::SQRT_2 / (learned + held_out).sqrt();
         let is_better = |count: f64, shifted: f64, lagging: f64| {
-            lagging + count * (noise - behind) - shifted > MANY_ERRORS * errors * count * noise
+            lagging + count * removed - shifted > MANY_ERRORS * errors * count * noise
         };
         let (shifted, lagging) = (&shifted.trial, &lagging.trial);
         Some(
