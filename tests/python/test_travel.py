@@ -122,6 +122,16 @@ def test_each_public_class_travels(name, examples):
         hash(one)
 
 
+@pytest.mark.parametrize("made", [copy.copy, copy.deepcopy])
+def test_a_copy_of_a_table_belongs_to_another_robot(made):
+    robot = fric.Robot.from_toml(BENCH)
+    cable, friction = made(robot.cable("winch")), made(robot.cable("winch").friction)
+    robot.cable("winch").friction.mu = 0.07
+    assert cable.friction.mu == friction.mu != 0.07
+    friction.mu = 0.08
+    assert robot.cable("winch").friction.mu == 0.07
+
+
 def test_values_that_differ_are_not_equal(examples):
     robot = fric.Robot.from_toml(BENCH)
     assert robot != examples["Robot"] and robot.cable("winch") == fric.Robot.from_toml(BENCH).cable("winch")

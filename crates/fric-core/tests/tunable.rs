@@ -141,7 +141,8 @@ fn a_change_before_the_last_one_is_over_is_refused() {
     let (mut output, mut expected) = (CycleOutput::default(), CycleOutput::default());
     for cycle in 0..300 {
         if cycle == 100 {
-            [&mut tunable, &mut undisturbed].map(|one| one.change(&new(), 50).unwrap());
+            tunable.change(&new(), 50).unwrap();
+            undisturbed.change(&new(), 50).unwrap();
         }
         if (101..150).contains(&cycle) {
             let error = tunable.change(&old(), 1).unwrap_err().to_string();

@@ -29,12 +29,31 @@ pub struct Wanted<'a> {
 
 /// Returns a copy of an argument's numbers, row by row. It is a copy so that nobody changes it while the interpreter is released.
 pub fn numbers(wanted: &Wanted<'_>, value: &Bound<'_, PyAny>) -> Outcome<Vec<f64>> {
-    checked(wanted, value, b"fiu", "real numbers", "float64")
+    let numpy = value.py().import("numpy")?;
+    // What is masked is a gap.
+    let filled = if is_masked(&numpy, value)? {
+        let real = value.call_method1("astype", ("float64",))?;
+        Some(real.call_method1("filled", (f64::NAN,))?)
+    } else {
+        None
+    };
+    checked(wanted, filled.as_ref().unwrap_or(value), b"fiu", "real numbers", "float64")
 }
 
 /// Returns the same for integers.
 pub fn integers(wanted: &Wanted<'_>, value: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
+    let numpy = value.py().import("numpy")?;
+    if is_masked(&numpy, value)? {
+        return Err(Fault::array_type(format!("`{}` has masked entries, and whole numbers have no gaps", wanted.name)));
+    }
     checked(wanted, value, b"iu", "whole numbers", "int64")
+}
+
+fn is_masked(numpy: &Bound<'_, PyModule>, value: &Bound<'_, PyAny>) -> Outcome<bool> {
+    if value.get_type().is(&numpy.getattr("ndarray")?) {
+        return Ok(false);
+    }
+    Ok(numpy.getattr("ma")?.call_method1("is_masked", (value,))?.is_truthy()?)
 }
 
 fn checked<T: Element + Copy>(

@@ -243,11 +243,15 @@ class TendonFit(Result):
     """Errors of the given manipulator, as a dict: tension_rms_n, marker_mean_mm, marker_max_mm. A key is absent if there is nothing to compare."""
     after: dict[str, float]
     """Errors of the fitted manipulator, with the same keys."""
+    is_misfit: bool
+    """Whether more of the gratings' tensions is left than noise and errors of their lines, so that something else is missing or wrong."""
+    common_steps: list[list[dict[str, Any]]]
+    """Steps of all gratings together that were taken off, for each run, as dicts: kind, time_s, step_nm."""
 
     @classmethod
     def _of(cls, shown: Shown, manipulator: Manipulator) -> TendonFit:
         found = json.loads(shown.json)
-        keys = ("parameters", "standard_errors", "given", "undetermined", "before", "after")
+        keys = ("parameters", "standard_errors", "given", "undetermined", "before", "after", "is_misfit", "common_steps")
         return cls(shown, manipulator, **{key: found[key] for key in keys})
 
 

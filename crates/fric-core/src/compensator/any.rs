@@ -30,7 +30,7 @@ pub struct AnySnapshot {
     state: Box<dyn Any + Send + Sync>,
 }
 
-/// The error for a snapshot of a robot with another number of cables.
+/// The error for a snapshot of a robot with another number of cables, or words that are not all of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SnapshotMismatch {
     /// Number of cables of the robot.

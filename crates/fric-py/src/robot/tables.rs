@@ -39,7 +39,9 @@ impl Place {
         let robot = self.robot.bind(py);
         let cable = |index: usize| -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
             let name = robot.borrow().file.cable_names().get(index).map(|name| (*name).to_owned());
-            Ok((robot.getattr("cable")?, (name,).into_pyobject(py)?))
+            // A deep copy copies arguments, but not a function, and so not the robot of a bound method.
+            let cable_of = py.import("operator")?.getattr("methodcaller")?.call1(("cable", name))?;
+            Ok((cable_of, (robot.clone(),).into_pyobject(py)?))
         };
         let attribute = |object: Bound<'py, PyAny>, key: &str| -> Outcome<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
             Ok((py.import("builtins")?.getattr("getattr")?, (object, key).into_pyobject(py)?))
@@ -190,6 +192,11 @@ macro_rules! table {
             fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> Outcome<bool> {
                 let Ok(other) = other.cast::<Self>() else { return Ok(false) };
                 Ok(self.0.table(py)? == other.get().0.table(py)?)
+            }
+
+            /// A copy belongs to a copy of the robot.
+            fn __copy__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+                slf.py().import("copy")?.getattr("deepcopy")?.call1((slf,))
             }
 
             /// Pickles, and copies, the robot's table.

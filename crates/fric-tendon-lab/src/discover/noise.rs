@@ -72,7 +72,9 @@ const MISFIT: f64 = 2.0;
 /// steps that were taken off, for this greatest tension.
 pub fn is_misfit(series: &[Vec<f64>], greatest_tension_n: f64, step_count: usize) -> bool {
     let mut common = Common::default();
-    series.iter().for_each(|series| common.add(series));
+    for series in series {
+        common.add(series);
+    }
     // The size of a step is known from the change between two samples of all gratings.
     #[expect(clippy::cast_precision_loss, reason = "small counts")]
     let of_steps =

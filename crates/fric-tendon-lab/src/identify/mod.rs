@@ -72,22 +72,28 @@ pub fn identify(
         return Err(ContinuumError::TooShort { count, needed: LEAST_SAMPLES });
     }
     let given = file.tables();
-    let has_markers = runs.iter().all(Run::has_markers);
-    let quantities = options.quantities.clone().unwrap_or_else(|| Quantity::usual(given, has_markers));
+    let has_markers = runs.iter().any(Run::has_markers);
+    let mut quantities = options.quantities.clone().unwrap_or_else(|| Quantity::usual(given, has_markers));
+    let mut kept = Vec::new();
+    if options.quantities.is_none() && !has_markers {
+        let with_markers = Quantity::usual(given, true).into_iter();
+        kept.push(Undetermined::unseen(with_markers.filter(|one| !quantities.contains(one))));
+    }
+    kept.extend(quantities.iter().filter(|one| one.is_impossible(given)).map(|one| Undetermined::impossible(*one)));
     let step_count = common_steps.iter().map(Vec::len).sum();
     let attempt = |quantities: &[Quantity]| Attempt::new(file, &runs, quantities, step_count);
     let mut found = attempt(&quantities)?;
     if let Some(worse) = found.worse {
-        // Numbers that move a disk away from its marker stand for something else, or the run hardly shows them. Friction may still be found.
-        let of_friction: Vec<Quantity> = quantities.iter().copied().filter(|one| one.is_friction()).collect();
-        let without = attempt(&of_friction)?;
-        let is_better = without.worse.is_none() && !without.is_misfit;
-        let better = if is_better { without } else { attempt(&[])? };
-        let (mut kept, found_now) = (found.unknowns(), better.unknowns());
-        kept.retain(|unknown| !found_now.contains(unknown));
-        found = better;
-        found.undetermined.insert(0, Undetermined::worse(&kept, &worse));
+        // Numbers that move a disk away from its marker stand for something else. Friction may still be found.
+        let friction: Vec<Quantity> = quantities.iter().copied().filter(|one| one.is_friction()).collect();
+        let without = if friction.len() < quantities.len() { Some(attempt(&friction)?) } else { None };
+        let better = without.filter(|without| without.worse.is_none() && !without.is_misfit);
+        let left = if better.is_some() { friction } else { Vec::new() };
+        found = better.map_or_else(|| attempt(&[]), Ok)?;
+        kept.push(Undetermined::worse(quantities.iter().filter(|one| !left.contains(one)), &worse));
+        quantities = left;
     }
+    found.undetermined.splice(0..0, kept);
     let mut wanted = found.solution.state.tables(&found.given);
     tidy(given, &mut wanted);
     let mut edit = ManipulatorEdit::between(given, &wanted);

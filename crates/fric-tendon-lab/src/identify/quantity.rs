@@ -127,7 +127,12 @@ impl Quantity {
         usual.into_iter().filter(|quantity| is_usual(quantity) && !quantity.unknowns(tables).is_empty()).collect()
     }
 
-    /// Whether it is one of friction, which does not move the disks under the measured tensions.
+    /// Whether it does not apply to a manipulator.
+    pub(super) fn is_impossible(self, tables: &ManipulatorTables) -> bool {
+        self != Self::Calibration && self.unknowns(tables).is_empty()
+    }
+
+    /// Whether it is one of friction.
     pub(super) fn is_friction(self) -> bool {
         matches!(self, Self::Mu | Self::HoleMu | Self::Sigma)
     }

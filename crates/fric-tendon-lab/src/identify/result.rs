@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::super::base_noise::BaseNoise;
 use super::super::discover::worse::Worse;
 use super::super::guard::Guard;
-use super::attempt::Attempt;
+use super::attempt::{Attempt, MadeWorse};
 use super::evaluation::{Evaluation, Row};
 use super::quantity::Quantity;
 use super::unknown::Unknown;
@@ -39,7 +39,7 @@ pub struct TendonFitResult {
     pub before: Disagreement,
     /// Errors with the fitted file.
     pub after: Disagreement,
-    /// Whether the fitted file leaves more of the gratings' tensions than noise, so that something else is missing or wrong.
+    /// Whether more of the gratings' tensions is left than noise and errors of their lines, so that something else is missing or wrong.
     pub is_misfit: bool,
 }
 
@@ -111,14 +111,25 @@ impl Undetermined {
         Self { parameters: vec![unknown.key()], sentence }
     }
 
-    pub(super) fn worse(kept: &[Unknown], worse: &Worse) -> Self {
-        let parameters: Vec<String> = kept.iter().map(|unknown| unknown.key()).collect();
+    pub(super) fn worse<'a>(kept: impl Iterator<Item = &'a Quantity>, worse: &MadeWorse) -> Self {
+        let parameters: Vec<String> = kept.map(|quantity| quantity.name().to_owned()).collect();
+        let what = match worse {
+            MadeWorse::Disk(Worse { disk, before_m, after_m }) => {
+                format!("move disk {} from {:.2} to {:.2} mm off its marker", disk + 1, 1e3 * before_m, 1e3 * after_m)
+            }
+            MadeWorse::Tensions([before_n, after_n]) => {
+                format!("leave {:.2} in place of {:.2} mN of the gratings' tensions", 1e3 * after_n, 1e3 * before_n)
+            }
+        };
+        let sentence = format!("a fit of `{}` would {what}; the file keeps its numbers", parameters.join("`, `"));
+        Self { parameters, sentence }
+    }
+
+    pub(super) fn unseen(kept: impl Iterator<Item = Quantity>) -> Self {
+        let parameters: Vec<String> = kept.map(|quantity| quantity.name().to_owned()).collect();
         let sentence = format!(
-            "a fit of `{}` would move disk {} from {:.2} to {:.2} mm off its marker; they stay as the file states them",
-            parameters.join("`, `"),
-            worse.disk + 1,
-            1e3 * worse.before_m,
-            1e3 * worse.after_m
+            "`{}` are not looked for, because the runs have no markers; the file keeps its numbers",
+            parameters.join("`, `")
         );
         Self { parameters, sentence }
     }

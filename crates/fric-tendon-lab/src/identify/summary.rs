@@ -8,7 +8,7 @@ use super::super::guard::Guard;
 use super::result::{Disagreement, TendonFitResult};
 
 /// What a fit says that leaves more than noise.
-const MISFIT: &str = "the fitted file leaves more of the gratings' tensions than noise, so something is missing or wrong that the fit does not vary, and \
+const MISFIT: &str = "more of the gratings' tensions is left than noise and errors of their lines, so something is missing or wrong that the fit does not vary, and \
                       values and intervals may be off; `fric-cli discover` looks for it";
 
 impl TendonFitResult {
@@ -28,7 +28,7 @@ impl TendonFitResult {
             text = text.replace(" of 1 runs", "");
         }
         if rows.is_empty() {
-            text += "Nothing is found: the runs determine none of the numbers, and the file keeps them.\n\n";
+            text += "Nothing is found that the file could take; it keeps its numbers.\n\n";
         } else {
             text += &table(&["", "given", "found"], 1, &rows);
             text += "\nValues with 95 % intervals.\n";

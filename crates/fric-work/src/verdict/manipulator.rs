@@ -51,12 +51,12 @@ pub fn of_tendon_fit(result: &TendonFitResult) -> Verdict {
         counted(result.runs.len(), "run")
     );
     let is_worse = markers.or(tensions).is_none_or(|(before, after)| after > before);
-    let tone = match (is_worse, result.undetermined.is_empty()) {
+    let tone = match (is_worse, result.undetermined.is_empty() && !result.is_misfit) {
         (true, _) => Tone::Bad,
         (false, false) => Tone::Mixed,
         (false, true) => Tone::Well,
     };
-    let todo = result.undetermined.iter().map(|open| format!("{}.", open.sentence)).collect();
+    let todo = result.warnings().into_iter().map(|warning| format!("{warning}.")).collect();
     Verdict { tone, sentence, todo }
 }
 

@@ -45,7 +45,7 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
         );
     }
     let fitted = file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?;
-    let is_changed = !found.result.parameters.0.is_empty();
+    let is_changed = !found.result.parameters.0.is_empty() || !found.edit.lines.is_empty();
     let what = if is_changed { "the manipulator file with these values" } else { "the manipulator file as it was" };
     let files = vec![Written::new(fitted, what)];
     json.finish(&found.result, &found.result.summary(), files)

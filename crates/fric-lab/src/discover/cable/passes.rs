@@ -105,26 +105,28 @@ impl CableLog<'_> {
         let mut search = Search::new(&bench, noise_n, self.around(&base, noise_n), &base, self.steady, &effort);
         let mut naming = search.run(&[]);
         let mut fitted = self.fitted(counts, &naming.model, noise_n);
-        for _ in 1..MOST_PASSES {
-            if effort.is_spent(naming.named.len()) {
+        let mut passes = 1;
+        loop {
+            let named = naming.effects();
+            if let Some(absent) = named.iter().find(|effect| self.may_be_absent(counts, &fitted, **effect)) {
+                search.refuse(*absent);
+                let others: Vec<Effect> = named.iter().copied().filter(|effect| effect != absent).collect();
+                naming = search.run(&others);
+                fitted = self.fitted(counts, &naming.model, noise_n);
+                continue;
+            }
+            if passes == MOST_PASSES || effort.is_spent(named.len()) {
                 break;
             }
-            let beyond = self.beyond(&bench, &search, &fitted, &naming.effects())?;
+            passes += 1;
+            let beyond = self.beyond(&bench, &search, &fitted, &named)?;
             if beyond.named.is_empty() {
                 break;
             }
             // Beside what is missing, everything has to justify itself again. What does not stay then would still be named from the extended file.
-            let again = search.run(&[naming.effects(), beyond.effects()].concat());
-            let is_new = again.effects().iter().any(|effect| !naming.effects().contains(effect));
+            let again = search.run(&[named.clone(), beyond.effects()].concat());
+            let is_new = again.effects().iter().any(|effect| !named.contains(effect));
             naming = if is_new { again } else { naming.followed_by(beyond) };
-            fitted = self.fitted(counts, &naming.model, noise_n);
-        }
-        while let Some(absent) =
-            naming.effects().into_iter().find(|effect| self.may_be_absent(counts, &fitted, *effect))
-        {
-            search.refuse(absent);
-            naming.named.retain(|named| named.effect != absent);
-            naming = search.run(&naming.effects());
             fitted = self.fitted(counts, &naming.model, noise_n);
         }
         let rest = self.rest(&bench, &fitted.model(), self.least_n(&base))?;

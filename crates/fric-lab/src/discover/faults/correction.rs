@@ -98,7 +98,7 @@ pub struct CorrectedFit {
     pub faults: Vec<Vec<RecordingFault>>,
 }
 
-/// Runs [`fit_cables`], and runs it again with late references moved to their correct times. A cable keeps its first fit if that fit's residual is
+/// Runs [`fit_cables`], and runs it again with late or early references moved to their correct times. A cable keeps its first fit if that fit's residual is
 /// not correlated with the rate of the reference, or if the second fit leaves more than noise. `take_residual_n` takes the [`residuals_n`] of each cable
 /// in turn, with the reference that it was fitted to.
 ///

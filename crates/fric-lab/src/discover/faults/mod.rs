@@ -2,7 +2,7 @@
 //!
 //! Each such fault has a name, values and a place in time, and is corrected before model and log are compared: stretches in which a sensor stands still or is at the
 //! end of its range, or where it spikes, are left out, hum (`lines`) and vibrations (`vibration`) come off the reference, the noise of the length (`length_noise`) is kept from being motion, and a reference
-//! that comes late goes where it belongs (`timing`). The steps of a coarse converter are noise, and told.
+//! that comes late or early goes where it belongs (`timing`). The steps of a coarse converter are noise, and told.
 
 pub mod correction;
 pub mod length_noise;

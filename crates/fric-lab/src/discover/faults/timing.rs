@@ -1,4 +1,4 @@
-//! A reference that is late, or whose clock runs at another rate than the winch's.
+//! A reference that is late or early, or whose clock runs at another rate than the winch's.
 //!
 //! A time error shows in the residual as the rate of the reference: a reference that is late by ε leaves `ε·dF/dt`. Delay and skew are improved
 //! iteratively from this part of the residual, after removing what the model's parameters can compensate. They are kept if the evidence is strong,
@@ -14,7 +14,7 @@ use crate::discover::cable::given_to;
 use crate::discover::naming::STRONG_BIC;
 use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::projection::{Columns, Signals, visit_less_projection};
-use crate::discover::workbench::{Model, Trial, Workbench};
+use crate::discover::workbench::{Trial, Workbench};
 use crate::fit::CableRecord;
 use crate::samples::interpolated::measured;
 use crate::samples::noise::{VARIANCE_ERROR, white_noise_apart};
@@ -91,8 +91,8 @@ pub struct Retimed {
     pub fault: RecordingFault,
 }
 
-/// An early reference is told from a lag of the sensor by so many standard errors of the noise variance. With half as many a reference that is early by
-/// 5 ms in slow motion is told from a lag, by luck; with twice as many one of 20 ms no longer is.
+/// An early reference is distinguished from a lag of the sensor by so many standard errors of the noise variance. With half as many a reference that is early by
+/// 5 ms in slow motion passes, by luck; with twice as many one of 20 ms no longer is.
 const MANY_ERRORS: f64 = 3.0;
 /// A lag has forgotten a sample of which this fraction is left. At 0.1 or 0.002 the result is the same.
 const FORGOTTEN: f64 = 0.02;
@@ -110,16 +110,21 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
     }
     let (blocks, measured) = (split(record), measured(record));
     let (counts, start) = given_to(record, stop)?;
-    let case = Case { record: *record, counts: &counts, blocks: &blocks, measured: &measured, start: &start, stop };
+    let case = Case { record: *record, counts: &counts, blocks: &blocks, measured: &measured, stop };
     let as_it_is = case.bench(record.references_n).try_one(&start);
     if !case.may_gain(record.references_n, &as_it_is)? {
         return None;
     }
     // A wrong time takes parameters to their bounds, where a fit then holds them: friction behind an early reference has no viscosity.
     let near = case.corrected(&as_it_is, Kind::Delay)?;
-    let (counts, start) = given_to(&record.with_references(&near.references_n), stop)?;
-    let case = Case { counts: &counts, start: &start, ..case };
-    let as_it_is = case.bench(record.references_n).try_one(&start);
+    let gains = |from: &Trial, to: &Trial| to.held_out < (1.0 - LEAST_GAIN) * from.held_out;
+    if !gains(&as_it_is, &near.trial) {
+        return None;
+    }
+    let (used, again) = given_to(&record.with_references(&near.references_n), stop)?;
+    let is_same = used == counts && again.free == start.free;
+    let case = Case { counts: &used, ..case };
+    let as_it_is = if is_same { as_it_is } else { case.bench(record.references_n).try_one(&again) };
     let first = case.improvement(record.references_n, &as_it_is, Kind::Skew)?;
     // The evidence is that of the first steps. A value interpolated between two samples has less noise than either, so that any shift by a fraction of
     // an interval makes the sum of squares smaller. The memory is that of what the whole shift leaves.
@@ -132,11 +137,10 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
         let parameters = kind.parameter_count() as f64;
         Some(delta_bic(independent(corrected, kind)?, 1.0 - first.gain_ratio, parameters) < -STRONG_BIC)
     };
-    let shifted = case.corrected(&as_it_is, Kind::Delay)?;
+    let shifted = if is_same { near } else { case.corrected(&as_it_is, Kind::Delay)? };
     // For the same reason a skew looks better than none, so the rest after the delay must still be correlated with the rate.
     let may_be_skewed = case.may_gain(&shifted.references_n, &shifted.trial)?;
     let skewed = if may_be_skewed { Some(case.corrected(&as_it_is, Kind::Skew)?) } else { None };
-    let gains = |from: &Trial, to: &Trial| to.held_out < (1.0 - LEAST_GAIN) * from.held_out;
     let fault = |fault, parameters| RecordingFault { fault, parameters, intervals_s: Vec::new() };
     let skewed = skewed.filter(|skewed| skewed.shift.skew.abs() <= MOST_SKEW);
     let skewed = skewed.filter(|skewed| gains(&shifted.trial, &skewed.trial) && gains(&as_it_is, &skewed.trial));
@@ -205,8 +209,6 @@ struct Case<'a> {
     counts: &'a [bool],
     blocks: &'a [Block],
     measured: &'a [bool],
-    /// The model from which every fit starts: from that of a wrong time it might not come back.
-    start: &'a Model,
     stop: &'a AtomicBool,
 }
 
@@ -215,7 +217,7 @@ impl<'a> Case<'a> {
     where
         'a: 'b,
     {
-        let Self { record, counts, blocks, measured, stop, .. } = *self;
+        let Self { record, counts, blocks, measured, stop } = *self;
         Workbench { record: record.with_references(references_n), blocks, counts, measured, stop }
     }
 
@@ -230,7 +232,7 @@ impl<'a> Case<'a> {
                 Kind::Lag => self.behind_lag(-shift.delay_s),
                 Kind::Delay | Kind::Skew => self.shifted(shift),
             };
-            trial = self.bench(&references_n).try_one(self.start);
+            trial = self.bench(&references_n).try_one(&trial.model());
             let end_s = seconds(&self.record, self.record.rows.len());
             if step.delay_s.abs() + step.skew.abs() * end_s < SMALL * self.record.interval_s {
                 break;
@@ -239,31 +241,38 @@ impl<'a> Case<'a> {
         Some(Corrected { shift, references_n, trial })
     }
 
-    /// Whether the references shifted agree better than those behind a lag. The noise that the lag removes from the references does not count, nor what may
-    /// be an error of its estimate.
+    /// Whether the references shifted agree better than those behind a lag, on the learned and on the held-out samples that both have. The noise that the lag
+    /// removes from the references does not count, nor what may be an error of its estimate.
     fn is_no_lag(&self, shifted: &Corrected, lagging: &Corrected) -> Option<bool> {
-        let noise_square = |of: &Corrected, reach: usize| {
-            let bench = self.bench(&of.references_n);
-            let noise_n = white_noise_apart(&bench.measured_of(&bench.residuals_n(&of.trial.values)), reach)?;
+        let left_n = |of: &Corrected| self.bench(&of.references_n).residuals_n(&of.trial.values);
+        let both_n: Vec<[f64; 2]> =
+            left_n(shifted).into_iter().zip(left_n(lagging)).map(|(one, other)| [one, other]).collect();
+        let bench = self.bench(&shifted.references_n);
+        let noise_square = |which: usize, reach: usize| {
+            let left_n: Vec<f64> = both_n.iter().map(|both_n| both_n[which]).collect();
+            let noise_n = white_noise_apart(&bench.measured_of(&left_n), reach)?;
             Some(noise_n * noise_n)
         };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples, not below 0")]
-        let reach = 1 + (-lagging.shift.delay_s * -FORGOTTEN.ln() / self.record.interval_s).max(0.0) as usize;
-        let noise = noise_square(shifted, LINE_REACH)?;
-        // Over so many samples a rest that is no noise looks like it.
-        let removed = (noise - noise_square(lagging, reach)?).max(0.0);
-        let bench = self.bench(&shifted.references_n);
+        let measured_count = self.measured.iter().filter(|measured| **measured).count();
         #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
-        let [learned, held_out] = [false, true].map(|held_out| bench.count(held_out) as f64);
-        let errors = VARIANCE_ERROR * std::f64::consts::SQRT_2 / (learned + held_out).sqrt();
-        let is_better = |count: f64, shifted: f64, lagging: f64| {
-            lagging + count * removed - shifted > MANY_ERRORS * errors * count * noise
+        let measured_s = self.record.interval_s * self.measured.len() as f64 / measured_count as f64;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples, not below 0")]
+        let reach = 1 + (lagging.shift.delay_s * FORGOTTEN.ln() / measured_s).max(0.0) as usize;
+        let noise = noise_square(0, LINE_REACH)?;
+        // Over so many samples a rest that is no noise looks like it.
+        let removed = (noise - noise_square(1, reach)?).max(0.0);
+        let sums = |held_out: bool| {
+            let used = bench.used(held_out);
+            let known = both_n.iter().zip(&used).filter(|([one, other], used)| **used && (one + other).is_finite());
+            known.fold([0.0; 3], |[count, one, other], ([shifted, lagging], _)| {
+                [count + 1.0, one + shifted * shifted, other + lagging * lagging]
+            })
         };
-        let (shifted, lagging) = (&shifted.trial, &lagging.trial);
-        Some(
-            is_better(learned, shifted.training, lagging.training)
-                && is_better(held_out, shifted.held_out, lagging.held_out),
-        )
+        let (learned, held_out) = (sums(false), sums(true));
+        let error = VARIANCE_ERROR * std::f64::consts::SQRT_2 / (learned[0] + held_out[0]).sqrt() * noise;
+        let is_better =
+            |[count, shifted, lagging]: [f64; 3]| lagging - shifted > count * (MANY_ERRORS * error - removed);
+        Some(is_better(learned) && is_better(held_out))
     }
 
     /// Whether a delay with a skew would reduce the residual notably.

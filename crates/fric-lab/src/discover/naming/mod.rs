@@ -233,7 +233,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut named = Vec::new();
         for _ in 0..PASSES {
             let before = set_of(&found);
-            self.refused = self.beyond_the_log();
+            self.refused = self.set_aside();
             named = self.pass(&mut found);
             if set_of(&found) == before || self.is_spent(&found) {
                 break;
@@ -257,14 +257,18 @@ impl<'b, 'a> Search<'b, 'a> {
         self.effort.is_spent(self.given_count + found.len())
     }
 
-    /// Returns the candidates that no log like this one can justify, and those that may not be there.
+    /// Returns the candidates that no log like this one can justify.
     fn beyond_the_log(&self) -> BTreeMap<Effect, Refusal> {
-        let absent = self.absent.iter().map(|effect| (*effect, Refusal::Absent));
         if self.bench.knows_load(self.noise_n) {
-            return absent.collect();
+            return BTreeMap::new();
         }
         let of_the_curve = [Effect::SensorGain, Effect::SensorNonlinearity];
-        absent.chain(of_the_curve.into_iter().map(|effect| (effect, Refusal::Open("offset_n")))).collect()
+        of_the_curve.into_iter().map(|effect| (effect, Refusal::Open("offset_n"))).collect()
+    }
+
+    /// Returns these, and those that may not be there.
+    fn set_aside(&self) -> BTreeMap<Effect, Refusal> {
+        self.beyond_the_log().into_iter().chain(self.absent.iter().map(|effect| (*effect, Refusal::Absent))).collect()
     }
 
     /// Adds candidates and tests whether they can stay, until nothing changes. A candidate that cannot stay is set aside, and the next one is tried.
@@ -321,6 +325,7 @@ impl<'b, 'a> Search<'b, 'a> {
             if let Some(refusal) = self.refused.remove(&first) {
                 self.refused.insert(second, refusal);
             }
+            self.absent.iter_mut().filter(|absent| **absent == first).for_each(|absent| *absent = second);
         }
     }
 

@@ -43,7 +43,7 @@ impl Search<'_, '_> {
         if self.excess(&model) <= NEGLIGIBLE || self.effort.is_spent(self.given_count + found.len() + 2) {
             return false;
         }
-        let beyond = self.beyond_the_log();
+        let beyond = self.set_aside();
         let mut round = self.round(found);
         round.retain(|(effect, _)| !effect.is_friction() && !beyond.contains_key(effect));
         for set in self.strong_sets(&model, &round, MOST_EFFECTS.saturating_sub(found.len())) {

@@ -29,7 +29,7 @@ pub(super) fn identified(result: &TendonFitResult) -> Markup {
                 tr { td { (key) } td { (of(&result.given, key)) } td { (number(Some(*value))) } td { (of(&result.standard_errors, key)) } }
             }
         }
-        @for open in &result.undetermined { p { (open.sentence) "." } }
+        @for warning in result.warnings() { p { (warning) "." } }
     }
 }
 
