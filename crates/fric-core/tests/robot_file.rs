@@ -295,6 +295,8 @@ fn bad_files() -> Vec<Bad> {
         Bad { text: String::new(), line: Some(1), says: &["`format`", "missing"] },
         // What does not go together.
         bad("fric-robot/1", "fric-robot/9", 1, &["`format`", "\"fric-robot/9\"", "\"fric-robot/1\""]),
+        // A key of the other format is no misspelling.
+        bad("fric-robot/1\"", "fric-robot/9\"\nbackbone = 1", 1, &["`format`", "\"fric-robot/9\"", "\"fric-robot/1\""]),
         bad("platform_m = [0.06, 0.05, -0.05]", "", 18, &["`base_m`", "without `platform_m`", "cable1"]),
         bad("base_m = [0.55, 0.4, 0.5]", "", 19, &["`platform_m`", "without `base_m`", "cable1"]),
         bad(

@@ -66,7 +66,18 @@ pub fn read_tables<T: DeserializeOwned>(text: &str, format: &str) -> Result<T, (
     if let Some(problem) = text_file::excess(text) {
         return Err((None, problem));
     }
-    toml::from_str(text).map_err(|error| (error_line(text, &error), describe(text, &error, format)))
+    toml::from_str(text).map_err(|error| {
+        other_format(text, format).unwrap_or_else(|| (error_line(text, &error), describe(text, &error, format)))
+    })
+}
+
+/// Returns the line and the problem of a text that states another format, whose keys are then no matter of spelling.
+fn other_format(text: &str, format: &str) -> Option<(Option<usize>, String)> {
+    let root = DeTable::parse(text).ok()?.into_inner();
+    let (_, stated) = root.iter().find(|(key, _)| key.get_ref() == "format")?;
+    let line = text.get(..stated.span().start)?.matches('\n').count() + 1;
+    let stated = stated.get_ref().as_str().filter(|stated| *stated != format)?;
+    Some((Some(line), format!("`format` is \"{stated}\"; this version reads \"{format}\"")))
 }
 
 /// The line (from 1) in which an error of the parser stands; one at the end of the text is in the last line with anything in it.
