@@ -122,7 +122,7 @@ pub enum MadeWorse {
 }
 
 impl MadeWorse {
-    /// Compares both files. Where a fit leaves no more than noise, what it makes worse by less than the noise is chance.
+    /// Compares both files. Where a fit leaves no more than noise, a disk may move off its marker if the disks together do not by more than the noise.
     fn of(before: &Evaluation, after: &Evaluation, is_misfit: bool) -> Option<Self> {
         Self::disk(before, after, is_misfit).or_else(|| Self::tensions(before, after))
     }
@@ -134,8 +134,10 @@ impl MadeWorse {
         };
         let (before, after) = (places(before), places(after));
         let noise_m = noise_m(&before)?;
-        let matters = |worse: &Worse| is_misfit || worse.after_m.powi(2) - worse.before_m.powi(2) > noise_m * noise_m;
-        grown([&before, &after], noise_m).filter(matters).map(Self::Disk)
+        let [before_m, after_m] = [&before, &after].map(|all| rms(all.iter().flatten().flatten()));
+        // Both coordinates of a distance have their noise.
+        let is_further = 2.0 * (after_m * after_m - before_m * before_m) > noise_m * noise_m;
+        grown([&before, &after], noise_m).filter(|_| is_misfit || is_further).map(Self::Disk)
     }
 
     fn tensions(before: &Evaluation, after: &Evaluation) -> Option<Self> {
