@@ -83,7 +83,7 @@ def examples():
         continuum.shape(calibrated, tendon.run, mixed=True, shapes=2),
         continuum.discover(calibrated, tendon.run),
         continuum.track(arm, bend_rad=[0.3, 0.2]),
-        continuum.fit(calibrated, tendon.run, parameters=["backbone_stiffness"]),
+        continuum.fit(calibrated, tendon.run, parameters=["mu"]),
         fleet.FleetRun("fit", "results", 1, 0, 0, (failure,)),
         failure,
         changed,
