@@ -83,13 +83,13 @@ miri:
 	else echo "not checked: the C interface under Miri; rustup cannot add miri and rust-src to the nightly toolchain"; fi
 
 install:
-	$(CARGO) build --quiet --profile $(PROFILE) -p fric-capi
-	PREFIX="$(PREFIX)" DESTDIR="$(DESTDIR)" crates/fric-capi/packaging/install.sh "$(TARGET)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))"
+	library=$$(CARGO="$(CARGO)" packaging/built.sh "$(PROFILE)" fric-capi libfric.so) && \
+	PREFIX="$(PREFIX)" DESTDIR="$(DESTDIR)" crates/fric-capi/packaging/install.sh "$${library%/*}"
 
 # The command line with its manual pages and completions. Where the directories are not on a path yet, the last line says so.
 install-cli:
-	$(CARGO) build --quiet --profile $(PROFILE) -p fric-cli
-	PREFIX="$(PREFIX)" DESTDIR="$(DESTDIR)" packaging/install-cli.sh "$(TARGET)/$(if $(filter dev,$(PROFILE)),debug,$(PROFILE))/fric-cli"
+	program=$$(CARGO="$(CARGO)" packaging/built.sh "$(PROFILE)" fric-cli fric-cli) && \
+	PREFIX="$(PREFIX)" DESTDIR="$(DESTDIR)" packaging/install-cli.sh "$$program"
 
 # The book, with every effect drawn, into target/book.
 book: python-package

@@ -1,5 +1,6 @@
 """libfric as a user has it: `make install`, CMake and pkg-config, the examples, and the bits of `fric-cli replay`."""
 
+import json
 import math
 import os
 import platform
@@ -451,6 +452,46 @@ def test_mistakes_are_told_in_a_sentence(examples, rows, tmp_path):
     lacking = tmp_path / "rows.csv"
     lacking.write_text("stamp_nanos,sensor_force_n.cable1\n", encoding="utf-8")
     assert "no column 'length_m.cable1'" in refused(ROBOT, lacking, tmp_path / "out.csv")
+
+
+@pytest.fixture
+def cargo(tmp_path):
+    """Stands in for cargo: says that it has built the shared library in these folders. The usual one holds an older library."""
+
+    def built(*folders):
+        for folder in ["debug", *folders]:
+            (tmp_path / "target" / folder).mkdir(parents=True, exist_ok=True)
+            for library in ["libfric.so", "libfric.a"]:
+                (tmp_path / "target" / folder / library).write_text(folder, encoding="utf-8")
+        paths = [[str(tmp_path / "target" / folder / library) for library in ("libfric.so", "libfric.a")] for folder in folders]
+        messages = [{"reason": "compiler-artifact", "target": {"name": "fric"}, "filenames": two, "fresh": True} for two in paths]
+        program = tmp_path / "cargo"
+        lines = "\n".join(json.dumps(message, separators=(",", ":")) for message in [*messages, {"reason": "build-finished", "success": True}])
+        program.write_text(f"#!/bin/sh\ncat <<'END'\n{lines}\nEND\n", encoding="utf-8")
+        program.chmod(0o755)
+        command = ["make", "--no-print-directory", "-C", ROOT, "install", "PROFILE=dev", f"PREFIX={tmp_path}/usr", f"CARGO={program}"]
+        environment = {**os.environ, "CARGO_TARGET_DIR": str(tmp_path / "target")}
+        return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+
+    return built
+
+
+def test_what_is_installed_is_what_cargo_has_built(cargo, tmp_path):
+    """For another target its files are in a folder of that name, beside those of an earlier build for this machine."""
+    done = cargo("riscv64gc-unknown-linux-gnu/debug")
+    assert done.returncode == 0, done
+    for library in ["libfric.so", "libfric.a"]:
+        assert (tmp_path / "usr/lib" / library).read_text(encoding="utf-8") == "riscv64gc-unknown-linux-gnu/debug"
+
+
+@pytest.mark.parametrize(
+    ("folders", "words"),
+    [([], "cargo has built no libfric.so of fric-capi; set build.target"), (["a/debug", "b/debug"], "for several targets; set CARGO_BUILD_TARGET")],
+)
+def test_nothing_is_installed_where_cargo_has_built_no_library_or_several(cargo, folders, words, tmp_path):
+    done = cargo(*folders)
+    assert done.returncode != 0 and words in done.stderr, done
+    assert not (tmp_path / "usr").exists()
 
 
 def test_destdir_is_respected(tmp_path):
