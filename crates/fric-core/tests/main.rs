@@ -41,6 +41,8 @@ mod scalar;
 #[cfg(test)]
 mod soak;
 #[cfg(test)]
+mod state_words;
+#[cfg(test)]
 mod status;
 #[cfg(test)]
 mod support;

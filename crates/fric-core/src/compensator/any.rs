@@ -26,26 +26,38 @@ pub struct AnyCompensator(Box<dyn Cycle>);
 /// The state of an [`AnyCompensator`] at one time, for [`AnyCompensator::restore`].
 #[derive(Debug)]
 pub struct AnySnapshot {
-    cable_count: usize,
+    /// [`Cycle::structure_word`] of each cable.
+    structure: Vec<u64>,
     state: Box<dyn Any + Send + Sync>,
 }
 
-/// The error for a snapshot of a robot with another number of cables, or words that are not all of the state.
+/// The error for a snapshot of a robot with other cables, or words that are not all of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SnapshotMismatch {
     /// Number of cables of the robot.
     pub expected: usize,
     /// Number of cables in the snapshot.
     pub found: usize,
+    /// Index of the first cable with other pulleys, another attachment, another form of presliding or other effects that remember something; `None` if
+    /// something else is wrong.
+    pub cable: Option<usize>,
 }
 
 impl fmt::Display for SnapshotMismatch {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { expected, found } = self;
-        if found == expected {
-            return formatter.write_str("the snapshot is incomplete, or of another version of the library");
+        let Self { expected, found, cable } = self;
+        match cable {
+            Some(cable) => write!(
+                formatter,
+                "the snapshot is of another robot: pulleys, attachment, presliding or effects with memory of cable {} differ; restore it with the robot \
+                 file that it was made with, or reset",
+                cable + 1
+            ),
+            None if found == expected => {
+                formatter.write_str("the snapshot is incomplete, or of another version of the library")
+            }
+            None => write!(formatter, "the snapshot is of a robot with {found} cables, this one has {expected}"),
         }
-        write!(formatter, "the snapshot is of a robot with {found} cables, this one has {expected}")
     }
 }
 
@@ -82,24 +94,44 @@ impl AnyCompensator {
     /// Returns a copy of the full state, including the last output.
     #[must_use]
     pub fn snapshot(&self) -> AnySnapshot {
-        AnySnapshot { cable_count: self.cable_count(), state: self.0.snapshot() }
+        AnySnapshot { structure: self.structure().collect(), state: self.0.snapshot() }
     }
 
     /// Restores the state of a snapshot; the following cycles have the same bits as after the snapshot.
     ///
     /// # Errors
-    /// Returns a [`SnapshotMismatch`] if the snapshot belongs to a robot with another number of cables; nothing is changed then.
+    /// Returns a [`SnapshotMismatch`] if the snapshot belongs to a robot with other cables: another number of them, other pulleys or attachments,
+    /// another form of presliding, other effects that remember something. Nothing is changed then.
     pub fn restore(&mut self, snapshot: &AnySnapshot) -> Result<(), SnapshotMismatch> {
-        let (expected, found) = (self.cable_count(), snapshot.cable_count);
-        let is_restored = expected == found && self.0.restore(snapshot.state.as_ref());
-        if is_restored { Ok(()) } else { Err(SnapshotMismatch { expected, found }) }
+        self.check_structure(&snapshot.structure)?;
+        let count = self.cable_count();
+        let is_restored = self.0.restore(snapshot.state.as_ref());
+        if is_restored { Ok(()) } else { Err(SnapshotMismatch { expected: count, found: count, cable: None }) }
     }
 
-    /// Returns the state as words, the number of cables first: the full content of a snapshot, bit for bit, for another process. The words are valid
-    /// only for this version of the crate.
+    /// Returns what gives the state of each cable its meaning.
+    fn structure(&self) -> impl Iterator<Item = u64> {
+        (0..self.cable_count()).map(|cable| self.0.structure_word(cable))
+    }
+
+    /// Checks that a state belongs to this robot by what [`structure`](Self::structure) was when it was taken.
+    fn check_structure(&self, of_state: &[u64]) -> Result<(), SnapshotMismatch> {
+        let (expected, found) = (self.cable_count(), of_state.len());
+        if expected != found {
+            return Err(SnapshotMismatch { expected, found, cable: None });
+        }
+        match self.structure().zip(of_state).position(|(ours, theirs)| ours != *theirs) {
+            None => Ok(()),
+            cable => Err(SnapshotMismatch { expected, found, cable }),
+        }
+    }
+
+    /// Returns the state as words: the full content of a snapshot, bit for bit, for another process. First come the number of cables and what the state
+    /// depends on, so that the words of another robot are refused. They are valid only for this version of the crate.
     #[must_use]
     pub fn state_words(&self) -> Vec<u64> {
         let mut words = vec![self.cable_count() as u64];
+        words.extend(self.structure());
         self.0.each_state_word(&mut |word| words.push(*word));
         words
     }
@@ -107,16 +139,21 @@ impl AnyCompensator {
     /// Restores the state from the words of [`state_words`](Self::state_words) of the same robot.
     ///
     /// # Errors
-    /// Returns a [`SnapshotMismatch`] if the words belong to a robot with another number of cables, or to another version; nothing is changed then.
+    /// Returns a [`SnapshotMismatch`] if the words belong to another version, or to a robot with other cables, as in [`restore`](Self::restore). Nothing
+    /// is changed then.
     pub fn restore_words(&mut self, words: &[u64]) -> Result<(), SnapshotMismatch> {
         let expected = self.cable_count();
-        let found = words.first().and_then(|count| usize::try_from(*count).ok()).unwrap_or(0);
-        let mut count = 1;
-        self.0.each_state_word(&mut |_| count += 1);
-        if found != expected || words.len() != count {
-            return Err(SnapshotMismatch { expected, found });
+        // What is no number of cables at all is no state of this version.
+        let found = words.first().and_then(|count| usize::try_from(*count).ok()).filter(|count| *count <= MOST_CABLES);
+        let found = found.unwrap_or(expected);
+        let mut state_count = 0;
+        self.0.each_state_word(&mut |_| state_count += 1);
+        if found != expected || words.len() != 1 + expected + state_count {
+            return Err(SnapshotMismatch { expected, found, cable: None });
         }
-        let mut words = words.iter().skip(1);
+        let (structure, state) = words.split_at(1 + expected);
+        self.check_structure(structure.split_at(1).1)?;
+        let mut words = state.iter();
         self.0.restore_words(&mut |word| *word = words.next().copied().unwrap_or_default());
         Ok(())
     }
@@ -187,6 +224,8 @@ impl AnyCompensator {
 trait Cycle: Send + Sync + fmt::Debug {
     fn reset(&mut self);
     fn snapshot(&self) -> Box<dyn Any + Send + Sync>;
+    /// Returns what gives the state of a cable its meaning; see [`Compensator::structure_word`].
+    fn structure_word(&self, cable: usize) -> u64;
     /// Visits the words of the state.
     fn each_state_word(&self, show: &mut dyn FnMut(&u64));
     /// Replaces the words of the state.
@@ -249,6 +288,10 @@ impl<const CABLES: usize> Cycle for Fixed<CABLES> {
 
     fn snapshot(&self) -> Box<dyn Any + Send + Sync> {
         Box::new((self.compensator.compensator().snapshot(), self.output))
+    }
+
+    fn structure_word(&self, cable: usize) -> u64 {
+        self.compensator.compensator().structure_word(cable)
     }
 
     fn each_state_word(&self, show: &mut dyn FnMut(&u64)) {

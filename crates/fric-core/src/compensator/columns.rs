@@ -4,6 +4,8 @@
 
 use crate::cable::{Cable, CableModel};
 use crate::effects::time_delay::{self, Delay, DelayLine};
+#[cfg(feature = "alloc")]
+use crate::effects::{Acting, Effect};
 use crate::effects::{EFFECT_PARAMETER_COUNT, MEMORY, UNKNOWN};
 use crate::friction::places::{NO_SLIP, PLACES, Places, START_WRAP_FACTOR};
 use crate::numbers::lanes::Block;
@@ -215,6 +217,28 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
     pub fn same_build(&self, other: &Self) -> bool {
         let bits = |of: &Self| [of.follows_pose, of.has_geometry].map(|column| column.map(f64::to_bits));
         bits(self) == bits(other) && self.pulley_place == other.pulley_place
+    }
+
+    /// Returns what gives the state of a cable its meaning, as one word: its number of pulleys, whether the first is at the sensor and the last follows
+    /// the pose, whether there is an attachment, the form of presliding, and the effects that remember something.
+    #[cfg(feature = "alloc")]
+    pub fn structure_word(&self, cable: usize) -> u64 {
+        let places = self.pulley_place.get(cable).copied().unwrap_or([PLACES; MAX_PULLEYS]);
+        let pulley_count = places.iter().filter(|place| **place < PLACES).count() as u64;
+        let at = |column: &[f64; CABLES]| column.get(cable).copied().unwrap_or(0.0);
+        let flags = [
+            places.first() == Some(&0),
+            at(&self.follows_pose) > 0.0,
+            at(&self.has_geometry) > 0.0,
+            at(&self.lumped) > 0.0,
+        ];
+        let value = |place: usize| place.checked_sub(FRICTION_COUNT).and_then(|place| self.effects.get(place)).map(at);
+        let acting =
+            Acting::of(|row, place| value(place).is_some_and(|value| value.to_bits() != row.neutral.to_bits()));
+        let remembers = |effect: &&Effect| **effect == Effect::TimeDelay || !effect.memory_places().is_empty();
+        let remembering = Effect::CATALOGUE.iter().filter(remembers).filter(|effect| acting.has(effect.acts()));
+        let effects = remembering.fold(Acting::NONE, |all, effect| all.and(effect.acts())).bits();
+        flags.iter().fold(u64::from(effects) << 8 | pulley_count, |word, flag| word << 1 | u64::from(*flag))
     }
 
     /// Returns which cables of a block have an attachment.

@@ -171,9 +171,16 @@ impl<const CABLES: usize> Compensator<CABLES> {
         Snapshot(self.state)
     }
 
-    /// Restores the state of a snapshot.
+    /// Restores the state of a snapshot, which must be of a robot with the same cables, pulleys, presliding and effects; this is not checked, because it
+    /// cannot fail in the loop.
     pub fn restore(&mut self, snapshot: &Snapshot<CABLES>) {
         self.state = snapshot.0;
+    }
+
+    /// Returns what gives the state of a cable its meaning, see [`ParamColumns::structure_word`].
+    #[cfg(feature = "alloc")]
+    pub(crate) fn structure_word(&self, cable: usize) -> u64 {
+        self.params.structure_word(cable)
     }
 
     /// Returns the friction stored at each pulley of a cable, counted from the winch, N.

@@ -407,6 +407,12 @@ impl Acting {
         Self(self.0 & !other.0)
     }
 
+    /// Returns the set as bits, one per effect in the order of [`Effect`].
+    #[cfg(feature = "alloc")]
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+
     /// Whether the sets have a common effect.
     #[inline(always)]
     pub const fn has(self, other: Self) -> bool {
