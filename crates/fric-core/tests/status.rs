@@ -242,6 +242,32 @@ fn no_check_for_a_frozen_sensor_where_it_is_switched_off() {
 }
 
 #[test]
+fn a_pause_beyond_all_bounds_hides_no_jump() {
+    for presliding in FORMS {
+        for elapsed_cycles in [f64::INFINITY, f64::MAX, 1.1e6, f64::NAN, f64::NEG_INFINITY, 0.0] {
+            let bench = Bench::new(presliding);
+            let jump = |length_m: f64, force_n: f64| {
+                let mut bench = bench.clone();
+                let last = bench.run(50);
+                bench.cycle += 1;
+                let mut signals = bench.signals();
+                signals.length_m += length_m;
+                signals.sensor_force_n += force_n;
+                let output =
+                    bench.compensator.step(&CycleInput { cables: [signals], elapsed_cycles, ..CycleInput::default() });
+                (last, output.cables[0])
+            };
+            let (last, output) = jump(5.0, 0.0);
+            assert_eq!(output.status, CableStatus::LENGTH_JUMP, "{elapsed_cycles}");
+            assert_eq!(output.friction_n.to_bits(), last.friction_n.to_bits());
+            assert!(jump(0.0, 40.0).1.status.contains(CableStatus::SENSOR_JUMP), "{elapsed_cycles}");
+            // What is possible in one cycle is no jump.
+            assert_eq!(jump(0.005, 0.1).1.status, CableStatus::OK, "{elapsed_cycles}");
+        }
+    }
+}
+
+#[test]
 fn a_jump_of_length_is_no_motion() {
     for presliding in FORMS {
         for jump_m in [0.02, -0.02, 5.0, -900.0] {

@@ -98,6 +98,37 @@ fn the_output_goes_over_without_a_step() {
     }
 }
 
+/// The blend goes by time, so that an overslept loop does not prolong it.
+#[test]
+fn skipped_cycles_count_in_the_blend() {
+    for (elapsed_cycles, counted) in [(5.0, 5.0), (2.5, 2.5), (0.0, 1.0), (f64::NAN, 1.0), (f64::INFINITY, 1e6)] {
+        let (mut tunable, mut old, mut new) = (TunableCompensator::new(old()), old(), new());
+        let mut output = CycleOutput::default();
+        for cycle in 0..100 {
+            tunable.step_into(&input(cycle), &mut output);
+            old.step(&input(cycle));
+        }
+        tunable.change(&new, BLEND_CYCLES).unwrap();
+        new.restore(&old.snapshot());
+        let mut done = 0.0;
+        for cycle in 100.. {
+            let input = CycleInput { elapsed_cycles, ..input(cycle) };
+            tunable.step_into(&input, &mut output);
+            done += counted;
+            let share = (done / f64::from(BLEND_CYCLES)).min(1.0);
+            let values = [&output, &old.step(&input), &new.step(&input)].map(numbers);
+            for ((value, old), new) in values[0].iter().zip(&values[1]).zip(&values[2]) {
+                let expected = (1.0 - share) * old + share * new;
+                assert!((value - expected).abs() < 1e-11, "{elapsed_cycles}, {done}: {value} of {old}, {new}");
+            }
+            assert_eq!(tunable.is_changing(), share < 1.0);
+            if share >= 1.0 {
+                break;
+            }
+        }
+    }
+}
+
 #[test]
 fn it_arrives_where_a_compensator_of_the_new_parameters_is() {
     let (mut tunable, mut built) = (TunableCompensator::new(old()), new());

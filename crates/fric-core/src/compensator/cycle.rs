@@ -26,8 +26,10 @@ pub struct CycleInput<const CABLES: usize> {
     pub cables: [CableInput; CABLES],
     /// Pose of the platform, if it is known.
     pub pose: Option<Pose>,
-    /// Cycles since the last call, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump.
-    /// Friction itself does not depend on time. Values below 1 and NaN count as 1.
+    /// Cycles since the last call, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump, and
+    /// advances a change of parameters. Friction itself does not depend on time. The range is 1 to 10⁶: lower values and NaN count as 1. Higher ones,
+    /// infinity included, count as 10⁶ for what goes by time, but as 1 in the checks of jumps: after such a pause, a change that is too large for one
+    /// cycle is flagged [`LENGTH_JUMP`](CableStatus::LENGTH_JUMP) or [`SENSOR_JUMP`](CableStatus::SENSOR_JUMP).
     pub elapsed_cycles: f64,
 }
 

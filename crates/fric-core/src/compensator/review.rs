@@ -13,7 +13,7 @@ use crate::effects::presliding_shape::{self, PreslidingShape};
 use crate::effects::viscous_nonlinearity::{self, ViscousNonlinearity};
 use crate::numbers::lanes::Block;
 use crate::signals::doubt::{BEYOND_RATIO, LONGEST_LIE_S, Shown, Stored, TOLERATED_N, review_friction, review_sensor};
-use crate::signals::{GREATEST_MOTION, bounded_elapsed, condition};
+use crate::signals::{GREATEST_MOTION, checked_cycles, condition};
 
 /// Effects that can make a bearing's friction smaller than its parameters alone say.
 pub(super) const BEARS_OTHERWISE: Acting = friction_drift::ACTS.and(load_nonlinearity::ACTS);
@@ -38,7 +38,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             finite: signals.sensor_finite,
             paused: signals.jump,
             unchanged_cycles,
-            elapsed_cycles: T::splat(bounded_elapsed(input.elapsed_cycles)),
+            elapsed_cycles: T::splat(checked_cycles(input.elapsed_cycles)),
             longest_cycles: T::splat(LONGEST_LIE_S / self.cycle_s),
         };
         let Self { params, .. } = &*self;

@@ -9,12 +9,13 @@ use crate::compensator::Compensator;
 use crate::compensator::cycle::{CableOutput, CycleInput, CycleOutput};
 use crate::platform::Wrench;
 use crate::robot::ParamError;
+use crate::signals::bounded_elapsed;
 
 /// A [`Compensator`] whose parameters can be changed between two cycles.
 ///
 /// In cycle k of the N of a change, each number of the output is `(1 − k/N)·old + (k/N)·new`, and a cable has the flags of both. From cycle N on, the
 /// output has the bits of the new parameters. In no cycle does an output change by more than the larger of the changes of old and new plus 1/N of
-/// their difference.
+/// their difference. Skipped cycles count: after `elapsed_cycles` of e, k grows by e, and an output may change by e/N of the difference.
 ///
 /// The stored friction is taken over from the old parameters; what it lacks, the new parameters learn like any compensator, over a few presliding
 /// distances f_c/σ of motion. If a cable changes from `per_pulley` to `lumped`, the stored friction is summed by its influence at the platform; in
@@ -26,8 +27,8 @@ pub struct TunableCompensator<const CABLES: usize> {
     /// Keeps running during a change.
     leaving: Compensator<CABLES>,
     leaving_output: CycleOutput<CABLES>,
-    total_cycles: u32,
-    done_cycles: u32,
+    total_cycles: f64,
+    done_cycles: f64,
 }
 
 impl<const CABLES: usize> TunableCompensator<CABLES> {
@@ -35,7 +36,13 @@ impl<const CABLES: usize> TunableCompensator<CABLES> {
     #[must_use]
     pub fn new(compensator: Compensator<CABLES>) -> Self {
         let leaving = compensator.clone();
-        Self { running: compensator, leaving, leaving_output: CycleOutput::default(), total_cycles: 0, done_cycles: 0 }
+        Self {
+            running: compensator,
+            leaving,
+            leaving_output: CycleOutput::default(),
+            total_cycles: 0.0,
+            done_cycles: 0.0,
+        }
     }
 
     /// Returns the compensator with the parameters set last.
@@ -63,8 +70,8 @@ impl<const CABLES: usize> TunableCompensator<CABLES> {
         self.running.check_exchange(next)?;
         self.leaving.copy_from(&self.running);
         self.running.take_parameters(next);
-        self.total_cycles = blend_cycles.max(1);
-        self.done_cycles = 0;
+        self.total_cycles = f64::from(blend_cycles.max(1));
+        self.done_cycles = 0.0;
         Ok(())
     }
 
@@ -72,10 +79,10 @@ impl<const CABLES: usize> TunableCompensator<CABLES> {
     pub fn step_into(&mut self, input: &CycleInput<CABLES>, output: &mut CycleOutput<CABLES>) {
         self.running.step_into(input, output);
         if self.is_changing() {
-            self.done_cycles += 1;
+            self.done_cycles += bounded_elapsed(input.elapsed_cycles);
             if self.is_changing() {
                 self.leaving.step_into(input, &mut self.leaving_output);
-                let new_share = f64::from(self.done_cycles) / f64::from(self.total_cycles);
+                let new_share = self.done_cycles / self.total_cycles;
                 blend(output, &self.leaving_output, new_share);
             }
         }

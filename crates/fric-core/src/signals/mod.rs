@@ -15,7 +15,7 @@ const GREATEST_FORCE_N: f64 = 1e9;
 /// Distance of the cable from its position at the last sensor change beyond which an unchanged sensor is frozen, m; greater than the noise of any
 /// encoder.
 const FROZEN_TRAVEL_M: f64 = 1e-3;
-/// Maximum number of cycles of a pause.
+/// Maximum number of cycles of a pause, 1000 s at 1 ms; after a longer one, signals say nothing about what happened meanwhile.
 const GREATEST_ELAPSED: f64 = 1e6;
 /// Lengths and speeds beyond this are invalid, m and m/s.
 pub(crate) const GREATEST_MOTION: f64 = 1e6;
@@ -159,7 +159,13 @@ pub fn next_cycle(last: f64, elapsed_cycles: f64) -> f64 {
     if last < 0.0 { 0.0 } else { last + bounded_elapsed(elapsed_cycles) }
 }
 
-/// Checks the signals of one cycle, `elapsed_cycles` after the last (values below 1 and NaN count as 1).
+/// Returns the number of cycles in which length and force may have changed, for the checks of jumps: only this one after a pause beyond the greatest.
+#[inline(always)]
+pub(crate) fn checked_cycles(elapsed_cycles: f64) -> f64 {
+    Scalar::max(if elapsed_cycles <= GREATEST_ELAPSED { elapsed_cycles } else { 0.0 }, 1.0)
+}
+
+/// Checks the signals of one cycle, `elapsed_cycles` after the last; for its range see [`CycleInput`](crate::CycleInput).
 #[inline(always)]
 pub fn condition<T: Scalar>(
     limits: &SignalLimits,
@@ -171,7 +177,7 @@ pub fn condition<T: Scalar>(
     // Motion: accept or reject the displacement of the cable.
     let motion_finite = raw.length_m.within(GREATEST_MOTION).and(raw.speed_m_per_s.within(GREATEST_MOTION));
     let change_m = raw.length_m - state.length_m;
-    let length_jump_m = T::splat(limits.length_jump_m * bounded_elapsed(elapsed_cycles));
+    let length_jump_m = T::splat(limits.length_jump_m * checked_cycles(elapsed_cycles));
     // Before the first length there is no motion and no flag.
     let has_length = state.length_m.lt(T::splat(UNKNOWN));
     let jump = motion_finite.and(length_jump_m.lt(change_m.abs())).and(has_length);
