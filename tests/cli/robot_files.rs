@@ -99,6 +99,16 @@ fn effects_that_do_nothing_are_warned_of() {
     }
 }
 
+#[test]
+fn a_cycle_time_that_no_controller_has_is_warned_of() {
+    let place = Place::with_log();
+    place.write("slow.toml", example_robot().replacen("cycle_s = 0.001", "cycle_s = 1.0", 1));
+    for command in ["replay", "info"] {
+        place.run(&[command, "log.mcap", "--model", "slow.toml"]).warns(&["`cycle_s`", "is 1 s", "0.001 at 1 kHz"]);
+        assert!(!place.run(&[command, "log.mcap", "--model", "robot.toml"]).stderr.contains("`cycle_s`"));
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn what_is_no_regular_file_is_not_waited_for() {

@@ -389,6 +389,22 @@ fn every_mistake_is_named_with_file_line_and_key() {
 }
 
 #[test]
+fn a_robot_without_a_cable_is_told_how_many_it_may_have() {
+    let text = SHORT.split_once("[[cable]]").unwrap().0.to_owned() + "cable = []\n";
+    assert_eq!(message(&text), "rig.toml, line 4: `cable` has 0 entries; allowed is 1 to 64");
+}
+
+#[test]
+fn a_cycle_time_that_no_controller_has_is_warned_of() {
+    for (cycle_s, is_slow) in [("0.001", false), ("0.2", false), ("1.0", true), ("4", true)] {
+        let text = with(SHORT, "cycle_s = 0.001", &format!("cycle_s = {cycle_s}"));
+        let warnings = RobotFile::parse(&text, "rig.toml").unwrap().warnings();
+        assert_eq!(warnings.len(), usize::from(is_slow), "{warnings:?}");
+        assert!(warnings.iter().all(|warning| warning.starts_with("`cycle_s` of the robot file is ")), "{warnings:?}");
+    }
+}
+
+#[test]
 fn options_without_a_text_name_the_key_too() {
     let mut options = RobotFile::parse(EXAMPLE, "rig.toml").unwrap().options().clone();
     options.cable[0].friction.mu = f64::NAN;

@@ -7,8 +7,11 @@ use std::vec::Vec;
 use super::file::{EffectTable, RobotFile};
 use crate::effects::Effect;
 
+/// Cycle time above which it is probably not in seconds, s: no winch is controlled at less than 5 Hz, and in milliseconds this is 5 kHz.
+const GREAT_CYCLE_S: f64 = 0.2;
+
 impl RobotFile {
-    /// Returns warnings about effects that change nothing.
+    /// Returns warnings about a cycle time that no controller has, and about effects that change nothing.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let is_idle = |effect: &EffectTable| {
@@ -19,6 +22,13 @@ impl RobotFile {
             })
         };
         let mut warnings = Vec::new();
+        let cycle_s = self.options().cycle_s;
+        if cycle_s > GREAT_CYCLE_S {
+            warnings.push(format!(
+                "`cycle_s` of the robot file is {cycle_s} s, the cycle time of no controller, and the checks of jumps depend on it; give the time from \
+                 one cycle to the next in seconds, 0.001 at 1 kHz"
+            ));
+        }
         for named in Effect::kinds() {
             let has_idle =
                 |effects: &[EffectTable]| effects.iter().any(|effect| effect.kind == named.kind() && is_idle(effect));

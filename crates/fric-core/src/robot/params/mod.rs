@@ -108,7 +108,7 @@ impl<'a> RobotParams<'a> {
         cables: &'a [CableParams],
     ) -> Result<Self, ParamError> {
         if cables.is_empty() {
-            let problem = ParamProblem::Count { count: 0, min: 1, max: usize::MAX };
+            let problem = ParamProblem::Count { count: 0, min: 1, max: MOST_CABLES };
             return Err(ParamError { key: "cable", pulley: None, effect: None, problem });
         }
         check("cycle_s", cycle_s, 1e-6, 10.0)?;
