@@ -65,6 +65,43 @@ impl core::error::Error for SendError {}
 
 /// Creates both ends for a compensator of `robot`, the running robot. Allocates.
 ///
+/// ```
+/// use fric_core::robot::{CableOptions, CableParams, FrictionOptions, MonitorOptions, PlatformOptions, PulleyOptions};
+/// use fric_core::{AnyCompensator, CableInput, RobotParams, parameter_exchange};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let pulleys = [PulleyOptions::Fixed { wrap_rad: core::f64::consts::PI, sensor: true }];
+/// let cable_with = |mu| {
+///     let friction = FrictionOptions { mu, sigma_n_per_m: Some(1000.0), ..FrictionOptions::default() };
+///     CableParams::new(&CableOptions { friction, ..CableOptions::new(&pulleys) })
+/// };
+/// let (running, fitted) = ([cable_with(0.02)?], [cable_with(0.03)?]);
+/// let robot = |cables| RobotParams::new(0.001, &PlatformOptions::default(), MonitorOptions::for_cycle(0.001), cables);
+/// let mut compensator = AnyCompensator::new(&robot(&running)?)?;
+/// let (mut sender, mut receiver) = parameter_exchange(&robot(&running)?)?;
+///
+/// std::thread::scope(|scope| {
+///     // Outside the loop: the output is to blend over within 0.1 s, 100 cycles.
+///     let sent = scope.spawn(|| sender.send(&robot(&fitted)?, 0.1).map_err(Box::<dyn std::error::Error + Send + Sync>::from));
+///     assert!(sent.join().is_ok_and(|sent| sent.is_ok()));
+/// });
+///
+/// // The loop: each cycle takes up what has arrived.
+/// for cycle in 0..200 {
+///     receiver.deliver_to(&mut compensator)?;
+///     let length_m = 1e-4 * f64::from(cycle);
+///     let signals = CableInput { sensor_force_n: 20.0 + 1e-3 * f64::from(cycle % 3), length_m, speed_m_per_s: 0.1 };
+///     compensator.set_input(&[signals], None, 1.0);
+///     compensator.step();
+///     assert_eq!(compensator.is_changing(), cycle < 99);
+/// }
+/// // Paying out over a pulley of 180°: F_1 = F_s (1 + μ)/2, with the new μ.
+/// let force_n = compensator.outputs()[0].force_at_platform_n;
+/// assert!((force_n - 20.001 * 1.03 / 2.0).abs() < 1e-4);
+/// # Ok(())
+/// # }
+/// ```
+///
 /// # Errors
 /// Returns the errors of [`AnyCompensator::new`].
 pub fn parameter_exchange(robot: &RobotParams<'_>) -> Result<(ParameterSender, ParameterReceiver), ParamError> {
