@@ -52,8 +52,10 @@ int main(int argc, char **argv) {
 
     printf("%s\n", fric_robot_name(compensator));
     for (size_t cable = 0; cable < cable_count; ++cable) {
-        printf("%s: %.4f N at the platform, %.4f N of it friction, status %u\n", fric_cable_name(compensator, cable),
-               results[cable].force_at_platform_n, results[cable].friction_n, (unsigned)results[cable].status);
+        char status[FRIC_TEXT_SIZE];
+        fric_status_text(results[cable].status, status, sizeof status);
+        printf("%s: %.4f N at the platform, %.4f N of it friction, status %s\n", fric_cable_name(compensator, cable),
+               results[cable].force_at_platform_n, results[cable].friction_n, status);
     }
     if (output.has_wrench) {
         const double *force_n = output.applied_wrench.force_n;

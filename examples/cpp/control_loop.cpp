@@ -86,6 +86,7 @@ struct Loop {
     Durations wake_up, step;
     Counters before{}, after{};
     std::uint64_t flagged = 0, overruns = 0, skipped = 0;
+    std::uint32_t flags = FRIC_STATUS_OK;
 
     /// Nothing in it allocates or throws.
     bool run(fric::Compensator& compensator, std::vector<Row>& rows, fric::Output& output,
@@ -111,6 +112,7 @@ struct Loop {
             overruns += missed > 0;
             skipped += static_cast<std::uint64_t>(missed);
             flagged += output.wrench_status != FRIC_STATUS_OK;
+            flags |= output.wrench_status;
             if (cycle == 0) {
                 before = Counters::read();
             }
@@ -149,7 +151,8 @@ int main(int argc, char** argv) {
             std::fprintf(stderr, "error: a buffer has the wrong size\n");
             return 1;
         }
-        std::printf("%zu cycles, %llu flagged\n", cycle_count, static_cast<unsigned long long>(loop.flagged));
+        std::printf("%zu cycles, %llu flagged: %s\n", cycle_count, static_cast<unsigned long long>(loop.flagged),
+                    fric::status_text(loop.flags).c_str());
         std::printf("%llu overruns, %llu cycles skipped\n", static_cast<unsigned long long>(loop.overruns),
                     static_cast<unsigned long long>(loop.skipped));
         std::printf("%-8s %9s %9s %9s %9s\n", "us", "p50", "p99.9", "p99.999", "max");

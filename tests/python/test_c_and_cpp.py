@@ -188,7 +188,7 @@ def test_the_c_example_agrees_with_python(examples):
         force_n, length_m = 15.0 + 1e-3 * (cycle % 10), 0.05 * 0.001 * cycle
         last = compensator.step(np.full(8, force_n), np.full(8, length_m), np.full(8, 0.05), **pose)
     forces_n = [float(value) for value in re.findall(r"([\d.]+) N at the platform", text)]
-    assert text.startswith("mini-ipanema\n") and text.count("status 0\n") == 8
+    assert text.startswith("mini-ipanema\n") and text.count("status ok\n") == 8
     assert np.allclose(forces_n, last.force_at_platform_n, rtol=0, atol=5.01e-5)
     assert "applied force" in text
 

@@ -1,6 +1,12 @@
 /* fric: friction compensation for cable robots, the interface in C.
  *
- * Made by cbindgen from crates/fric-capi; do not edit. SI units, in the names. SPDX-License-Identifier: MIT OR Apache-2.0 */
+ * Made by cbindgen from crates/fric-capi; do not edit. SI units, in the names.
+ *
+ * A cable robot: fric_load_file at set-up, fric_step in each cycle, fric_free at the end. A continuum manipulator:
+ * fric_static_model_load_file, fric_static_model_tension_for and fric_static_model_solve, fric_static_model_free.
+ * What stands under "Safety" the caller has to ensure; everything else is checked and gives a code.
+ *
+ * SPDX-License-Identifier: MIT OR Apache-2.0 */
 
 #ifndef FRIC_H
 #define FRIC_H
@@ -83,6 +89,9 @@
 /// The flags with which the command does not reach the goal.
 #define FRIC_COMMAND_MISSED 7
 
+/// Bytes that hold every text of fric_status_text, including the final zero.
+#define FRIC_TEXT_SIZE 256
+
 /// No fault.
 #define FRIC_STATUS_OK 0
 
@@ -95,10 +104,11 @@
 /// The sensor force is NaN, infinite or beyond 1e9 N: the last valid force and friction are held.
 #define FRIC_STATUS_SENSOR_NOT_FINITE 4
 
-/// The sensor is bit-identical while the cable moves: the last valid force and friction are held.
+/// The sensor repeats its value to the last bit for `frozen_cycles` of the robot file, in which the cable has moved by 1 mm or more: the last valid
+/// force and friction are held. A quiet sensor with coarse steps needs more cycles there, or 0, which switches the check off.
 #define FRIC_STATUS_SENSOR_FROZEN 8
 
-/// The length changed by more than `length_jump_m` of the robot file: the friction is held.
+/// The length changed by more than `length_jump_m` of the robot file per elapsed cycle: the friction is held.
 #define FRIC_STATUS_LENGTH_JUMP 16
 
 /// Length or speed is NaN, infinite or beyond 1e6: the friction is held.
@@ -113,7 +123,7 @@
 /// The pose leaves the cable no way out of its last pulley: last wrap and direction are held.
 #define FRIC_STATUS_POSE_UNREACHABLE 256
 
-/// The sensor force has jumped by more than the cable can change, and not yet returned; computed as usual.
+/// The sensor force has jumped by more than the cable can change it, and has not yet returned; computed as usual.
 #define FRIC_STATUS_SENSOR_JUMP 512
 
 /// The stored friction exceeds what the load allows by more than 25 % of the tension + 0.1 N, or a jump of the sensor may have left an error of 5 % +
@@ -134,7 +144,7 @@ typedef enum fric_result {
   FRIC_RESULT_BUSY = 4,
   /// A bug inside the library was caught; please report it.
   FRIC_RESULT_INTERNAL = 5,
-  /// A selecting number is none of the header's, or a limit is out of its range.
+  /// A `kind` or `friction` is none of this header's numbers for it, or a limit of the drives is out of its range.
   FRIC_RESULT_BAD_VALUE = 6,
 } fric_result;
 
@@ -181,8 +191,10 @@ typedef struct fric_input {
   size_t cable_count;
   /// Pose of the platform; null if it is unknown.
   const struct fric_pose *pose;
-  /// Cycles since the last step, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump.
-  /// Values below 1 (0, as in a zeroed structure) and NaN count as 1.
+  /// Cycles since the last step, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump, and
+  /// advances a change of parameters. The range is 1 to 1e6: lower values (0, as in a zeroed structure) and NaN count as 1. Higher ones, infinity
+  /// included, count as 1e6 for what goes by time, but as 1 in the checks of jumps: after such a pause, a change that is too large for one cycle is
+  /// flagged FRIC_STATUS_LENGTH_JUMP or FRIC_STATUS_SENSOR_JUMP.
   double elapsed_cycles;
 } fric_input;
 
@@ -274,7 +286,7 @@ typedef struct fric_disk_input {
   double tension_n[2];
 } fric_disk_input;
 
-/// The tensions of a wanted shape.
+/// The tensions for which a shape is computed.
 typedef struct fric_shape_input {
   /// sizeof(fric_shape_input).
   size_t struct_size;
@@ -321,13 +333,13 @@ typedef struct fric_shape_output {
 extern "C" {
 #endif // __cplusplus
 
-/// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a jump in the
-/// output.
+/// Changes a compensator to the parameters of another robot file while a thread steps it: without stopping that thread, without a lock in the step,
+/// and without a jump in the output.
 ///
 /// The following steps take the parameters over: within `blend_s` seconds (0…3600; at least one cycle) the output blends from the old parameters to
-/// the new ones, and a step takes twice as long, the first up to six times. The file must be that of the same robot: friction, effects, wraps,
-/// geometry, masses and limits may differ; cycle time, the cables' names and order, their numbers of pulleys, which pulleys follow the pose, and
-/// which cables have an attachment may not. One change at a time: FRIC_RESULT_BUSY until the first step after the blend of the previous change.
+/// the new ones, and a step takes twice as long, the first up to six times. Skipped cycles (`elapsed_cycles`) count in that time. The file must be
+/// that of the same robot: friction, effects, wraps, geometry, masses and limits may differ; cycle time, the cables' names and order, their numbers of
+/// pulleys, which pulleys follow the pose, and which cables have an attachment may not. One change at a time: FRIC_RESULT_BUSY until the first step after the blend of the previous change.
 /// FRIC_RESULT_ROBOT_FILE also if the file is that of another robot, or `blend_s` is NaN or out of its range. `error` is as in fric_load_file. Not
 /// for the cycle: it reads a file and allocates.
 ///
@@ -340,7 +352,7 @@ enum fric_result fric_change_file(const struct fric_compensator *compensator,
                                   char *error,
                                   size_t error_size);
 
-/// Does the same with the text of a robot file.
+/// Does the same as fric_change_file with the text of a robot file.
 ///
 /// # Safety
 /// `toml` is null or a zero-terminated string; the rest as for fric_change_file.
@@ -415,7 +427,7 @@ enum fric_result fric_load_file(const char *path,
                                 char *error,
                                 size_t error_size);
 
-/// Does the same with the text of a robot file, which has no path: errors name line and key.
+/// Does the same as fric_load_file with the text of a robot file, which has no path: errors name line and key.
 ///
 /// # Safety
 /// `toml` is null or a zero-terminated string; the rest as for fric_load_file.
@@ -470,7 +482,7 @@ enum fric_result fric_static_model_load_file(const char *path,
                                              char *error,
                                              size_t error_size);
 
-/// Does the same with the text of a manipulator file, which has no path: errors name line and key.
+/// Does the same as fric_static_model_load_file with the text of a manipulator file, which has no path: errors name line and key.
 ///
 /// # Safety
 /// `toml` is null or a zero-terminated string; the rest as for fric_static_model_load_file.
@@ -528,6 +540,19 @@ void fric_static_model_free(struct fric_static_model *model);
 enum fric_result fric_static_model_solve(struct fric_static_model *model,
                                          const struct fric_shape_input *input,
                                          struct fric_shape_output *output);
+
+/// Writes the names of the flags in the status of a cable or a wrench, such as "SLACK|SENSOR_JUMP": those of FRIC_STATUS_…, lowest bit first, or "ok"
+/// for FRIC_STATUS_OK. Bits that are no flag are left out.
+///
+/// `text` receives the text, cut to `text_size` bytes including the final zero; FRIC_TEXT_SIZE bytes suffice. It may be null with size 0.
+/// Returns the length of the whole text without the final zero, as snprintf does. It may run inside the control loop: it does not allocate, lock or
+/// wait.
+///
+/// # Safety
+/// `text` is null or points to `text_size` writable bytes.
+size_t fric_status_text(uint32_t status,
+                        char *text,
+                        size_t text_size);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -2,7 +2,8 @@
 ///
 /// Set-up throws fric::Error with a sentence that states the problem and its place. Nothing in the cycle throws, allocates, or
 /// locks: `step`, `solve`, `tension_for_…`, and `reset` are noexcept and return a code. The code differs from OK only if a
-/// buffer has the wrong size.
+/// buffer has the wrong size (FRIC_RESULT_WRONG_SIZE, or FRIC_RESULT_BAD_POINTER if it is empty) or the object has been moved from
+/// (FRIC_RESULT_BAD_POINTER).
 /// All quantities are in SI units, which the names state. SPDX-License-Identifier: MIT OR Apache-2.0
 
 #ifndef FRIC_HPP
@@ -75,7 +76,7 @@ struct Input {
     std::vector<CableInput> cables;
     /// Pose of the platform, if known.
     std::optional<Pose> pose;
-    /// Number of cycles since the last step: 1 unless cycles were skipped.
+    /// Number of cycles since the last step: 1 unless cycles were skipped. Range as in fric_input: 1 to 1e6.
     double elapsed_cycles = 1.0;
 };
 
@@ -90,6 +91,14 @@ struct Output {
     /// All FRIC_STATUS_… flags of the cables from which the wrenches are computed.
     std::uint32_t wrench_status = FRIC_STATUS_OK;
 };
+
+/// Returns the names of the flags in the status of a cable or a wrench, such as "SLACK|SENSOR_JUMP", or "ok" if there is none.
+/// Allocates; fric_status_text does not.
+[[nodiscard]] inline std::string status_text(std::uint32_t status) {
+    char text[FRIC_TEXT_SIZE] = "";
+    ::fric_status_text(status, text, sizeof text);
+    return text;
+}
 
 /// Friction compensation of one robot. It can be moved, not copied. Only one thread at a time may step or reset it;
 /// other threads may query it and change parameters meanwhile.
@@ -132,7 +141,7 @@ public:
         return change(::fric_change_file, path, blend_s);
     }
 
-    /// Changes to the parameters in the text of a robot file, like `change_parameters`.
+    /// Changes to the parameters in the text of a robot file, like `change_to_file`. Throws Error.
     [[nodiscard]] bool change_to_text(const std::string& toml, double blend_s) const {
         return change(::fric_change_text, toml, blend_s);
     }

@@ -7,18 +7,18 @@ use std::sync::PoisonError;
 use fric_core::SendError;
 use fric_core::robot::file::RobotFile;
 
-use crate::error_text::ErrorText;
 use crate::handle::{Handle, description};
 use crate::load::{guarded, text};
 use crate::outcome::Outcome;
+use crate::text_buffer::TextBuffer;
 
-/// Changes to the parameters of another robot file while a thread steps: without stopping it, without a lock in the step, and without a jump in the
-/// output.
+/// Changes a compensator to the parameters of another robot file while a thread steps it: without stopping that thread, without a lock in the step,
+/// and without a jump in the output.
 ///
 /// The following steps take the parameters over: within `blend_s` seconds (0…3600; at least one cycle) the output blends from the old parameters to
-/// the new ones, and a step takes twice as long, the first up to six times. The file must be that of the same robot: friction, effects, wraps,
-/// geometry, masses and limits may differ; cycle time, the cables' names and order, their numbers of pulleys, which pulleys follow the pose, and
-/// which cables have an attachment may not. One change at a time: FRIC_RESULT_BUSY until the first step after the blend of the previous change.
+/// the new ones, and a step takes twice as long, the first up to six times. Skipped cycles (`elapsed_cycles`) count in that time. The file must be
+/// that of the same robot: friction, effects, wraps, geometry, masses and limits may differ; cycle time, the cables' names and order, their numbers of
+/// pulleys, which pulleys follow the pose, and which cables have an attachment may not. One change at a time: FRIC_RESULT_BUSY until the first step after the blend of the previous change.
 /// FRIC_RESULT_ROBOT_FILE also if the file is that of another robot, or `blend_s` is NaN or out of its range. `error` is as in fric_load_file. Not
 /// for the cycle: it reads a file and allocates.
 ///
@@ -34,7 +34,7 @@ pub unsafe extern "C" fn fric_change_file(
     error_size: usize,
 ) -> Outcome {
     // SAFETY: the caller of this function promises the same.
-    let error = unsafe { ErrorText::new(error, error_size) };
+    let error = unsafe { TextBuffer::new(error, error_size) };
     // SAFETY: the caller of this function promises the same.
     let path = unsafe { text(path, "path") };
     // SAFETY: the caller of this function promises the same.
@@ -49,7 +49,7 @@ pub unsafe extern "C" fn fric_change_file(
     }
 }
 
-/// Does the same with the text of a robot file.
+/// Does the same as fric_change_file with the text of a robot file.
 ///
 /// # Safety
 /// `toml` is null or a zero-terminated string; the rest as for fric_change_file.
@@ -62,7 +62,7 @@ pub unsafe extern "C" fn fric_change_text(
     error_size: usize,
 ) -> Outcome {
     // SAFETY: the caller of this function promises the same.
-    let error = unsafe { ErrorText::new(error, error_size) };
+    let error = unsafe { TextBuffer::new(error, error_size) };
     // SAFETY: the caller of this function promises the same.
     let toml = unsafe { text(toml, "toml") };
     // SAFETY: the caller of this function promises the same.
@@ -86,7 +86,7 @@ unsafe fn change(
     source: Result<&str, (Outcome, String)>,
     read: impl FnOnce(&str) -> Result<RobotFile, String>,
     blend_s: f64,
-    error: ErrorText,
+    error: TextBuffer,
 ) -> Outcome {
     error.write("");
     // SAFETY: the caller of this function promises the same.

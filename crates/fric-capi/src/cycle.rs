@@ -65,8 +65,10 @@ pub struct CycleSignals {
     pub cable_count: usize,
     /// Pose of the platform; null if it is unknown.
     pub pose: *const PlatformPose,
-    /// Cycles since the last step, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump.
-    /// Values below 1 (0, as in a zeroed structure) and NaN count as 1.
+    /// Cycles since the last step, 1 unless some were skipped. A longer pause allows a longer distance before a change of length counts as a jump, and
+    /// advances a change of parameters. The range is 1 to 1e6: lower values (0, as in a zeroed structure) and NaN count as 1. Higher ones, infinity
+    /// included, count as 1e6 for what goes by time, but as 1 in the checks of jumps: after such a pause, a change that is too large for one cycle is
+    /// flagged FRIC_STATUS_LENGTH_JUMP or FRIC_STATUS_SENSOR_JUMP.
     pub elapsed_cycles: f64,
 }
 

@@ -17,12 +17,12 @@
 mod abi;
 mod change;
 mod cycle;
-mod error_text;
 mod handle;
 mod load;
 mod outcome;
 mod static_model;
 mod status;
+mod text_buffer;
 
 pub use abi::FRIC_ABI_VERSION;
 pub use change::{fric_change_file, fric_change_text};

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use fric_core::robot::file::{RobotFile, RobotFileError};
 
-use crate::error_text::ErrorText;
 use crate::handle::{Handle, Unfit};
 use crate::outcome::Outcome;
+use crate::text_buffer::TextBuffer;
 
 /// Creates a compensator for the robot of a robot file (TOML, `format = "fric-robot/1"`).
 ///
@@ -27,7 +27,7 @@ pub unsafe extern "C" fn fric_load_file(
     error_size: usize,
 ) -> Outcome {
     // SAFETY: the caller of this function promises the same.
-    let error = unsafe { ErrorText::new(error, error_size) };
+    let error = unsafe { TextBuffer::new(error, error_size) };
     // SAFETY: the caller of this function promises the same.
     let path = unsafe { text(path, "path") };
     let set_up = || compensator_of(RobotFile::read(Path::new(path?)));
@@ -35,7 +35,7 @@ pub unsafe extern "C" fn fric_load_file(
     unsafe { load(set_up, compensator, "compensator", error) }
 }
 
-/// Does the same with the text of a robot file, which has no path: errors name line and key.
+/// Does the same as fric_load_file with the text of a robot file, which has no path: errors name line and key.
 ///
 /// # Safety
 /// `toml` is null or a zero-terminated string; the rest as for fric_load_file.
@@ -47,7 +47,7 @@ pub unsafe extern "C" fn fric_load_text(
     error_size: usize,
 ) -> Outcome {
     // SAFETY: the caller of this function promises the same.
-    let error = unsafe { ErrorText::new(error, error_size) };
+    let error = unsafe { TextBuffer::new(error, error_size) };
     // SAFETY: the caller of this function promises the same.
     let toml = unsafe { text(toml, "toml") };
     let set_up = || compensator_of(RobotFile::parse(toml?, "robot file"));
@@ -85,7 +85,7 @@ pub(crate) unsafe fn load<T>(
     set_up: impl FnOnce() -> Result<T, (Outcome, String)>,
     handle: *mut *mut T,
     name: &str,
-    error: ErrorText,
+    error: TextBuffer,
 ) -> Outcome {
     error.write("");
     if handle.is_null() || !handle.is_aligned() {

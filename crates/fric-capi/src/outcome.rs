@@ -21,7 +21,7 @@ pub enum Outcome {
     Busy = 4,
     /// A bug inside the library was caught; please report it.
     Internal = 5,
-    /// A selecting number is none of the header's, or a limit is out of its range.
+    /// A `kind` or `friction` is none of this header's numbers for it, or a limit of the drives is out of its range.
     BadValue = 6,
 }
 

@@ -3,7 +3,8 @@
 
 use allocation_counter::measure;
 use fric::{
-    FRIC_FRICTION_NONE, Outcome, ShapeSignals, fric_reset, fric_static_model_copy_state, fric_static_model_reset,
+    FRIC_FRICTION_NONE, FRIC_TEXT_SIZE, Outcome, ShapeSignals, fric_reset, fric_static_model_copy_state,
+    fric_static_model_reset, fric_status_text,
 };
 
 mod support;
@@ -22,6 +23,8 @@ fn a_step_does_not_allocate() {
             }
             let pose = (cycle % 3 != 0).then_some(&support::POSE);
             let (results, _) = support::step(&handle, &cables, pose);
+            let mut text = [0; FRIC_TEXT_SIZE];
+            assert!(unsafe { fric_status_text(results[1].status, text.as_mut_ptr(), text.len()) } > 0);
             flagged += results.iter().filter(|result| result.status != 0).count();
             if cycle == 1000 {
                 assert_eq!(unsafe { fric_reset(handle.0) }, Outcome::Ok);

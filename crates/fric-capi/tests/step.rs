@@ -1,16 +1,40 @@
 //! The cycle: the core's bits, guards, faults.
 
+use std::ffi::{CStr, c_char};
 use std::mem::MaybeUninit;
 use std::ptr;
 
 use fric::{
     CableResult, CableSignals, CycleResult, CycleSignals, FRIC_STATUS_OK, FRIC_STATUS_POSE_MISSING,
-    FRIC_STATUS_SENSOR_NOT_FINITE, Outcome, PlatformPose, fric_reset, fric_step,
+    FRIC_STATUS_SENSOR_NOT_FINITE, FRIC_TEXT_SIZE, Outcome, PlatformPose, fric_reset, fric_status_text, fric_step,
 };
 use fric_core::robot::file::RobotFile;
-use fric_core::{CableInput, Compensator, CycleInput, Pose};
+use fric_core::{CableInput, CableStatus, Compensator, CycleInput, Pose};
 
 use crate::support::{CABLES, POSE, ROBOT, input, output, robot, signals, step};
+
+/// A text of a status in a buffer of `size` bytes, of which the next stays as it was; and the length that the function returns.
+fn status_text(status: u32, size: usize) -> (String, usize) {
+    let mut text = vec![b'#'.cast_signed() as c_char; size + 1];
+    let length = unsafe { fric_status_text(status, text.as_mut_ptr(), size) };
+    assert_eq!(text.pop(), Some(b'#'.cast_signed() as c_char), "written past the buffer");
+    let text =
+        if size == 0 { String::new() } else { unsafe { CStr::from_ptr(text.as_ptr()) }.to_str().unwrap().to_owned() };
+    (text, length)
+}
+
+#[test]
+fn a_status_has_a_text() {
+    for (status, expected) in [(FRIC_STATUS_OK, "ok"), (5, "SLACK|SENSOR_NOT_FINITE"), (1 << 31 | 1024, "UNSETTLED")] {
+        assert_eq!(status_text(status, FRIC_TEXT_SIZE), (expected.to_owned(), expected.len()));
+        for size in 0..=expected.len() {
+            assert_eq!(status_text(status, size), (expected[..size.saturating_sub(1)].to_owned(), expected.len()));
+        }
+    }
+    let (all, length) = status_text(u32::MAX, FRIC_TEXT_SIZE);
+    assert!(all.len() == length && all.matches('|').count() + 1 == CableStatus::NAMES.len(), "{all}");
+    assert_eq!(unsafe { fric_status_text(u32::MAX, ptr::null_mut(), 9) }, length);
+}
 
 #[test]
 fn a_cycle_has_the_bits_of_the_core() {

@@ -7,9 +7,9 @@ use fric_tendon::{Drive, DriveOptions, Friction, Goal};
 use super::handle::{ModelHandle, Work};
 use super::shape::{FRIC_FRICTION_MEASURED, friction_of};
 use crate::cycle::usable;
-use crate::error_text::ErrorText;
 use crate::load::guarded;
 use crate::outcome::Outcome;
+use crate::text_buffer::TextBuffer;
 
 /// The goal is a bend of the whole manipulator.
 pub const FRIC_GOAL_BEND: u32 = 0;
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn fric_static_model_set_drive(
     error_size: usize,
 ) -> Outcome {
     // SAFETY: the caller of this function promises the same.
-    let error = unsafe { ErrorText::new(error, error_size) };
+    let error = unsafe { TextBuffer::new(error, error_size) };
     error.write("");
     if !(usable(model) && usable(drive)) {
         error.write("`model` or `drive` is a null pointer or not aligned");

@@ -8,9 +8,9 @@ use fric_tendon::file::ManipulatorFile;
 use fric_tendon::{AnyStaticModel, Drive, DriveOptions};
 
 use crate::cycle::usable;
-use crate::error_text::ErrorText;
 use crate::load::{load, text};
 use crate::outcome::Outcome;
+use crate::text_buffer::TextBuffer;
 
 /// Static model of one continuum manipulator: created by fric_static_model_load_file or fric_static_model_load_text, freed by fric_static_model_free.
 ///
@@ -65,7 +65,7 @@ pub unsafe extern "C" fn fric_static_model_load_file(
     error_size: usize,
 ) -> Outcome {
     // SAFETY: the caller of this function promises the same.
-    let error = unsafe { ErrorText::new(error, error_size) };
+    let error = unsafe { TextBuffer::new(error, error_size) };
     // SAFETY: the caller of this function promises the same.
     let path = unsafe { text(path, "path") };
     let set_up = || {
@@ -76,7 +76,7 @@ pub unsafe extern "C" fn fric_static_model_load_file(
     unsafe { load(set_up, model, "model", error) }
 }
 
-/// Does the same with the text of a manipulator file, which has no path: errors name line and key.
+/// Does the same as fric_static_model_load_file with the text of a manipulator file, which has no path: errors name line and key.
 ///
 /// # Safety
 /// `toml` is null or a zero-terminated string; the rest as for fric_static_model_load_file.
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn fric_static_model_load_text(
     error_size: usize,
 ) -> Outcome {
     // SAFETY: the caller of this function promises the same.
-    let error = unsafe { ErrorText::new(error, error_size) };
+    let error = unsafe { TextBuffer::new(error, error_size) };
     // SAFETY: the caller of this function promises the same.
     let toml = unsafe { text(toml, "toml") };
     let set_up = || {

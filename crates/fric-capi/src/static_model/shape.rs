@@ -25,7 +25,7 @@ pub struct DiskTensions {
     pub tension_n: [f64; 2],
 }
 
-/// The tensions of a wanted shape.
+/// The tensions for which a shape is computed.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeSignals {
