@@ -105,7 +105,9 @@ int main(int argc, char** argv) {
         write(argv[3], bends_rad, cycles);
         std::size_t missed = 0;
         for (const Cycle& cycle : cycles) {
-            missed += cycle.command.is_reached() ? 0 : 1;
+            if (!cycle.command.is_reached()) {
+                ++missed;
+            }
         }
         std::printf("%s: %zu goals, %zu out of reach\n", model.name().c_str(), cycles.size(), missed);
         return 0;

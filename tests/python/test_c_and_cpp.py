@@ -24,7 +24,7 @@ from fric import continuum
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="`make install` is for Linux")
 
-WARNINGS = "-Wall -Wextra -Wpedantic -Wshadow -Werror"
+WARNINGS = "-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror"
 ROW_COUNT = 6000
 
 
@@ -154,7 +154,7 @@ def test_headers_compile_without_a_warning(header):
     tool("g++")
     found = [compiler for compiler in compilers if shutil.which(compiler)]
     assert found
-    flags = f"{WARNINGS} -Wconversion -Wsign-conversion {extra} -fsyntax-only".split()
+    flags = f"{WARNINGS} {extra} -fsyntax-only".split()
     folder = ROOT / "crates/fric-capi/include"
     for compiler in found:
         for standard in standards:
