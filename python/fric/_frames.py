@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._results.base import counted
+
 if TYPE_CHECKING:
     from ._fric import Log
 
@@ -45,7 +47,7 @@ def table(log: Log) -> str:
     duration_s = log.time_s[-1] if len(log) else 0.0
     signals = ", ".join(log) or "none"
     return (
-        f"<p>{len(log)} rows, {duration_s:.3f} s; signals: {signals}</p>"
+        f"<p>{counted(len(log), 'row')}, {duration_s:.3f} s; signals: {signals}</p>"
         f"<table><thead><tr><th>cable</th>{head}</tr></thead><tbody>{rows}</tbody></table>"
     )
 

@@ -96,7 +96,7 @@ def test_the_hidden_effect_is_named_with_its_values(robot, result):
     assert robot.cable("winch").effects == () and robot.to_toml() == SLOW_BENCH
     assert "The model lacks stribeck; with it, what is left is noise." in result.summary()
     assert repr(winch) == '<CableDiscovery "winch": extended, stribeck>'
-    assert repr(result) == '<DiscoverResult of "bench": 1 cables, effects found on 1>'
+    assert repr(result) == '<DiscoverResult of "bench": 1 cable, effects found on 1>'
 
 
 def test_the_residual_is_that_of_a_replay_with_the_extended_robot(log, result):

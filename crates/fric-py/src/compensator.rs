@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use crate::arrays::{Axis, Wanted, array, numbers};
 use crate::errors::{Fault, Outcome};
 use crate::results;
-use crate::robot::Robot;
-use crate::travel::{self, Reduced};
+use crate::robot::{Robot, cables_in_words};
+use crate::travel::{self, Reduced, counted_words};
 use crate::watch::Watch;
 
 /// Friction compensation, as in the control loop: the same code, the same bits.
@@ -175,8 +175,8 @@ impl Compensator {
     }
 
     fn __repr__(&self) -> String {
-        let names: Vec<&str> = self.cables.iter().map(|(name, _)| name.as_str()).collect();
-        format!("<Compensator of {:?}: cables {}>", self.robot.file.options().name, names.join(", "))
+        let cables = cables_in_words(&self.robot.file.cable_names());
+        format!("<Compensator of {:?}: {cables}>", self.robot.file.options().name)
     }
 
     /// Pickles, and copies, the robot and the state; the copy continues with the same bits.
@@ -199,7 +199,7 @@ impl Compensator {
 #[pymethods]
 impl Snapshot {
     fn __repr__(&self) -> String {
-        format!("<Snapshot: {} cables>", self.words.first().copied().unwrap_or(0))
+        format!("<Snapshot: {}>", counted_words(&self.words, "cable"))
     }
 
     /// Pickles, and copies, the numbers of the state.

@@ -10,6 +10,7 @@ use fric_lab::columns::{SampleColumns, SampleRows};
 use fric_log::log::Log as LogSource;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
 use fric_log::signals::{LengthWindow, Role, SignalPaths, SignalReader};
+use fric_work::verdict::counted;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
@@ -17,7 +18,7 @@ use pyo3::types::{PyIterator, PySlice, PyTuple};
 
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, integers, numbers};
 use crate::errors::{Fault, Outcome};
-use crate::robot::Robot;
+use crate::robot::{Robot, cables_in_words};
 use crate::watch::{STRIDE, Watch};
 
 /// The samples of a log, joined on the times of the cable signal: read-only arrays with one row per sample.
@@ -184,7 +185,7 @@ impl Log {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!("<Log: {} rows, cables {}>", self.__len__(py)?, self.cable_names.join(", ")))
+        Ok(format!("<Log: {}, {}>", counted(self.__len__(py)?, "row"), cables_in_words(&self.cable_names)))
     }
 }
 

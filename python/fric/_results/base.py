@@ -80,6 +80,11 @@ class Result(Value):
         return self._shown.summary
 
 
+def counted(count: int, thing: str) -> str:
+    """Returns a number of things, such as "1 log" or "2 logs"."""
+    return f"{count} {thing}{'' if count == 1 else 's'}"
+
+
 class _Named(Protocol):
     @property
     def name(self) -> str: ...

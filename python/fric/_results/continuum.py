@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .._errors import ConfigError
 from .._fric import Manipulator, TendonRun, _unknown_name
-from .base import Result, Shown, Value
+from .base import Result, Shown, Value, counted
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -153,7 +153,7 @@ class ShapeResult(Result):
         return values
 
     def __repr__(self) -> str:
-        return f"<ShapeResult of {len(self.time_s)} samples: {', '.join(self.ways)}>"
+        return f"<ShapeResult of {counted(len(self.time_s), 'sample')}: {', '.join(self.ways)}>"
 
     @classmethod
     def _of(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._fric import Robot
-from .base import Result, Shown, Value, of_cable
+from .base import Result, Shown, Value, counted, of_cable
 from .fit import LeftOut, LogValues
 from .replay import Fault, ForceError
 
@@ -271,7 +271,7 @@ class DiscoverResult(Result):
     def __repr__(self) -> str:
         extended = sum(bool(cable.effects) for cable in self.cables)
         name = json.dumps(self.robot.name, ensure_ascii=False)
-        return f"<DiscoverResult of {name}: {len(self.cables)} cables, effects found on {extended}>"
+        return f"<DiscoverResult of {name}: {counted(len(self.cables), 'cable')}, effects found on {extended}>"
 
     @classmethod
     def _of(

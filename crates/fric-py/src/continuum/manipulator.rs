@@ -6,6 +6,7 @@ use fric_log::output::OutputFile;
 use fric_tendon::Tendon;
 use fric_tendon::file::{ManipulatorFile, ManipulatorFileError};
 use fric_work::provenance::Provenance;
+use fric_work::verdict::counted;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -101,6 +102,6 @@ impl Manipulator {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Manipulator {:?}: {} disks>", self.name(), self.disk_count())
+        format!("<Manipulator {:?}: {}>", self.name(), counted(self.disk_count(), "disk"))
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use fric_log::table::NumberTable;
 use fric_tendon_lab::gratings::Gratings;
 use fric_tendon_lab::{Run, RunSample, columns, load_steps};
+use fric_work::verdict::counted;
 use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 
@@ -121,7 +122,7 @@ impl TendonRun {
     }
 
     fn __repr__(&self) -> String {
-        format!("<TendonRun of {} samples: {}>", self.run.samples().len(), self.name())
+        format!("<TendonRun of {}: {}>", counted(self.run.samples().len(), "sample"), self.name())
     }
 
     /// Pickles, and copies, its numbers.

@@ -2,6 +2,7 @@
 
 use fric_core::robot::unknown_name;
 use fric_tendon::{AnyStaticModel, Direction, Drive, DriveOptions, Friction, Goal};
+use fric_work::verdict::counted;
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -9,7 +10,8 @@ use super::Manipulator;
 use super::static_rows::{CommandRows, ShapeRows};
 use crate::arrays::{Axis, Wanted, numbers};
 use crate::errors::{Fault, Outcome};
-use crate::travel::{self, Reduced};
+use crate::exclusive::Exclusive;
+use crate::travel::{self, Reduced, counted_words};
 use crate::watch::Watch;
 
 /// Static model of a manipulator, as in the control loop: the same code, the same bits.
@@ -337,7 +339,8 @@ impl StaticModel {
     }
 
     fn __repr__(&self) -> String {
-        format!("<StaticModel of {:?}: {} disks>", self.manipulator.get().file.tables().name, self.disk_count())
+        let disks = counted(self.disk_count(), "disk");
+        format!("<StaticModel of {:?}: {disks}>", self.manipulator.get().file.tables().name)
     }
 
     /// Pickles, and copies, the manipulator, the drive and the state; the copy continues with the same bits.
@@ -373,7 +376,7 @@ impl StaticModel {
 #[pymethods]
 impl StaticSnapshot {
     fn __repr__(&self) -> String {
-        format!("<StaticSnapshot: {} disks>", self.words.first().copied().unwrap_or(0))
+        format!("<StaticSnapshot: {}>", counted_words(&self.words, "disk"))
     }
 
     /// Pickles, and copies, the numbers of the state.

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use fric_core::robot::file::{RobotFile, RobotFileError};
 use fric_core::robot::unknown_name;
 use fric_log::output::OutputFile;
+use fric_work::verdict::counted;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
@@ -145,8 +146,8 @@ impl Robot {
     }
 
     fn __repr__(&self) -> String {
-        let count = self.file.options().cable.len();
-        format!("<Robot {:?}: {count} cables, cycle {} s>", self.name(), self.cycle_s())
+        let cables = counted(self.file.options().cable.len(), "cable");
+        format!("<Robot {:?}: {cables}, cycle {} s>", self.name(), self.cycle_s())
     }
 
     /// Pickles, and copies, the text of its file.
@@ -178,6 +179,12 @@ impl Robot {
         let place = names.iter().position(|other| *other == name);
         place.ok_or_else(|| Fault::config(unknown_name("cable", name, names.into_iter())))
     }
+}
+
+/// Returns the cables by their names, for people.
+pub fn cables_in_words(names: &[impl AsRef<str>]) -> String {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    format!("{} {}", if names.len() == 1 { "cable" } else { "cables" }, names.join(", "))
 }
 
 fn edit_keys(robot: &Bound<'_, Robot>, given: &[(String, Bound<'_, PyAny>)]) -> Outcome {

@@ -2,6 +2,7 @@
 
 use fric_lab::fit::readiness;
 use fric_lab::fit::{self, FitOptions, KeptFunction, Reference, SampleStore};
+use fric_work::verdict::counted;
 use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -94,8 +95,8 @@ impl ResidualFunction {
     }
 
     fn __repr__(&self) -> String {
-        let (names, count) = (self.names_of().join(", "), self.function.count());
-        format!("<ResidualFunction of {:?}: {names}; {count} residuals>", self.cable)
+        let (names, residuals) = (self.names_of().join(", "), counted(self.function.count(), "residual"));
+        format!("<ResidualFunction of {:?}: {names}; {residuals}>", self.cable)
     }
 
     /// Pickles, and copies, its samples.

@@ -32,7 +32,8 @@ pub struct Verdict {
     pub todo: Vec<String>,
 }
 
-/// Formats a number of things.
-pub(crate) fn counted(count: usize, thing: &str) -> String {
+/// Formats a number of things, such as "1 cable" or "2 cables".
+#[must_use]
+pub fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("{count} {thing}") } else { format!("{count} {thing}s") }
 }
