@@ -3,6 +3,7 @@
 import copy
 import enum
 import inspect
+import json
 import pickle
 import subprocess
 import sys
@@ -184,6 +185,26 @@ def test_arrays_that_cannot_be_written_to_stay_so(examples):
     for array in [*arrays, examples["Compensation"].friction_n]:
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0.0
+
+
+def test_lists_and_dicts_of_results_are_read_only(examples):
+    for result in (examples["FitResult"], pickle.loads(pickle.dumps(examples["FitResult"])), copy.deepcopy(examples["FitResult"])):
+        cable = result.cables[0]
+        for change in (
+            lambda cable: cable.values.update(mu=1.0),
+            lambda cable: cable.values.__setitem__("mu", 1.0),
+            lambda cable: cable.values.pop("mu"),
+            lambda cable: cable.left_out.__delitem__("flagged"),
+            lambda cable: cable.undetermined.append("mu"),
+        ):
+            with pytest.raises(TypeError, match=r"is part of a result and read-only; change a copy"):
+                change(cable)
+        own = dict(cable.values)
+        own["mu"] = 1.0
+        assert own != cable.values == dict(cable.values) and json.loads(json.dumps(cable.values)) == cable.values
+        assert cable.values.copy() == cable.values and type(cable.values.copy()) is dict and list(cable.undetermined) == cable.undetermined
+    with pytest.raises(TypeError, match="read-only"):
+        examples["DiscoverResult"].cables[0].effects[0]["parameters"]["gain"] = 1.0
 
 
 def test_states_of_another_version_are_refused(examples):

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._errors import ConfigError
 from .._fric import _unknown_name
+from .._read_only import read_only
 
 # If the text of a list or dict is longer, `repr` shows only the number of its entries.
 _LONGEST_TEXT = 200
@@ -26,15 +27,14 @@ class Shown(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Value:
-    """Immutable record. Two are equal if all fields are equal, where NaN equals NaN. Its arrays are read-only."""
+    """Immutable record. Two are equal if all fields are equal, where NaN equals NaN. Its arrays, lists, and dicts are read-only."""
 
     def __post_init__(self) -> None:
-        _fix(vars(self))
+        vars(self).update({name: read_only(value) for name, value in vars(self).items()})
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         # Pickling loses the read-only flag of arrays.
-        vars(self).update(state)
-        _fix(state)
+        vars(self).update({name: read_only(value) for name, value in state.items()})
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -99,15 +99,6 @@ def of_cable(cables: tuple[_Cable, ...], name: str) -> _Cable:
         if cable.name == name:
             return cable
     raise ConfigError(_unknown_name("cable", name, [cable.name for cable in cables]))
-
-
-def _fix(values: dict[Any, Any]) -> None:
-    """Makes arrays read-only."""
-    for value in values.values():
-        if isinstance(value, np.ndarray):
-            value.flags.writeable = False
-        elif isinstance(value, dict):
-            _fix(value)
 
 
 def _same(one: Any, other: Any) -> bool:
