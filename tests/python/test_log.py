@@ -329,3 +329,11 @@ def test_logs_become_data_frames(log, library, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, library, None)
     with pytest.raises(ImportError, match=f"pip install {library}"):
         getattr(log, f"to_{library}")()
+
+
+def test_a_recording_is_not_named_as_another_file(robot, tmp_path):
+    log = fric.simulate(robot, duration_s=0.1)
+    with pytest.raises(fric.OutputError, match=r"`output` is `.*x.csv`, and what is written is MCAP; name it `.mcap`"):
+        fric.replay(robot, log, output=tmp_path / "x.csv")
+    assert not list(tmp_path.iterdir())
+    fric.replay(robot, log, output=tmp_path / "x.mcap")

@@ -11,6 +11,7 @@ use fric_core::effects::Effect;
 use fric_lab::fit::{LogZero, Reference, zero_per_log};
 use fric_lab::simulate::DISTURBANCES;
 use fric_log::signals::Part;
+use fric_work::recording_name;
 
 use crate::failure::{Failure, Outcome};
 
@@ -519,16 +520,9 @@ fn a_file() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// Endings of files that a recording is not.
-const OTHER_ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "json", "html", "toml", "db3", "bag", "xlsx", "mat", "parquet"];
-
 /// An MCAP file, which is not named like another kind of file.
 fn a_recording() -> impl TypedValueParser<Value = PathBuf> {
-    a_file().try_map(|path| {
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-        let is_other = OTHER_ENDINGS.contains(&ending.as_str());
-        if is_other { Err("what is written is MCAP; name it `.mcap`") } else { Ok(path) }
-    })
+    a_file().try_map(|path| recording_name::check(&path).map(|()| path))
 }
 
 /// Whether it is in range depends on the robot and is checked with it.

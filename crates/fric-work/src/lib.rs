@@ -3,7 +3,7 @@
 //! The command line and the Python module compute with `fric-lab` on samples that `fric-log` reads, and present the results through this crate, so
 //! that both show the same. [`json`] is the text of a result for machines, [`provenance`] records its origin, [`report`] contains the pages, each one
 //! file without network access, [`fit_report`] is a fit in the style of lmfit, [`replay`] is the result of a replay, [`set_points`] is the file of a
-//! run, and [`questions`] are those that a designed run is to answer. The texts of the other results are with them in `fric-lab`.
+//! run, [`recording_name`] checks that of a recording, and [`questions`] are those that a designed run is to answer. The texts of the other results are with them in `fric-lab`.
 //!
 //! This crate neither reads logs nor computes friction, and it depends on neither a terminal nor Python.
 
@@ -13,6 +13,7 @@ pub mod excite;
 pub mod fit_report;
 pub mod provenance;
 pub mod questions;
+pub mod recording_name;
 pub mod replay;
 pub mod report;
 pub mod set_points;

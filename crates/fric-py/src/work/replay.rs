@@ -9,13 +9,14 @@ use fric_lab::fit::{Reference, SampleStore};
 use fric_lab::replay::Replay;
 use fric_log::write::ReplayedLog;
 use fric_work::provenance::Provenance;
+use fric_work::recording_name;
 use fric_work::replay::{CycleTimes, ReplayResult};
 use fric_work::report::{Series, errors};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 use crate::compensator::compensation;
-use crate::errors::Outcome;
+use crate::errors::{Fault, Outcome};
 use crate::log::{self, Log};
 use crate::results;
 use crate::robot::Robot;
@@ -45,6 +46,10 @@ pub fn replay(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();
+    let named_otherwise = output.as_ref().and_then(|path| Some((path.display(), recording_name::check(path).err()?)));
+    if let Some((path, problem)) = named_otherwise {
+        return Err(Fault::output(format!("`output` is `{path}`, and {problem}")));
+    }
     let mut watch = Watch::new(py, progress)?;
     let log = if let Ok(log) = log.cast::<Log>() {
         log.clone()
