@@ -17,6 +17,7 @@ _refuse_sub_interpreters()
 
 from . import continuum, fleet, plot  # noqa: E402
 from ._errors import (  # noqa: E402
+    ArgumentTypeError,
     ArrayTypeError,
     ConfigError,
     ConfigFileNotFoundError,
@@ -67,6 +68,7 @@ from ._results import (  # noqa: E402
 from ._status import Status  # noqa: E402
 
 __all__ = [
+    "ArgumentTypeError",
     "ArrayTypeError",
     "AxisHysteresis",
     "Cable",

@@ -1,5 +1,7 @@
 """Exceptions and warnings of fric."""
 
+import re
+
 
 class FricError(Exception):
     """Base class of all errors of fric."""
@@ -15,6 +17,21 @@ class ShapeError(FricError, ValueError):
 
 class ArrayTypeError(ShapeError, TypeError):
     """An array argument is not an array of numbers. The message states what was expected and what was given."""
+
+
+class ArgumentTypeError(ConfigError, TypeError):
+    """An argument is not of the class or range that the call takes. The message states which argument, what it must be, and what was given."""
+
+    def add_note(self, note: str) -> None:
+        """Takes the name of the argument into the message. The compiled part gives it as a note."""
+        if name := re.fullmatch("while processing '(.*)'", note):
+            self.args = (f"`{name[1]}` {self}",)
+        else:
+            super().add_note(note)
+
+
+class InUseError(FricError, RuntimeError):
+    """An object is used by two calls at once. The message states what to do."""
 
 
 class LogError(FricError):
@@ -54,6 +71,8 @@ for _public in (
     ConfigFileNotFoundError,
     ShapeError,
     ArrayTypeError,
+    ArgumentTypeError,
+    InUseError,
     LogError,
     LogFileNotFoundError,
     FitError,

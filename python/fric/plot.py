@@ -9,21 +9,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import datetime
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ._arguments import must_be, refusal
 from ._errors import ConfigError, FitError, ShapeError
-from ._results import FitResult
+from ._fric import Log
+from ._results import Compensation, DiscoverResult, FitResult, ReplayResult, ShapeResult
+from .fleet import Trend
 
 if TYPE_CHECKING:
     # Type checks without matplotlib accept any axes.
     from matplotlib.axes import Axes as _Axes  # type: ignore[import-not-found, unused-ignore]
 
-    from ._fric import Log
-    from ._results import CableDiscovery, Compensation, DiscoverResult, ReplayResult, ShapeResult
-    from .fleet import Trend
+    from ._results import CableDiscovery
 
 __all__ = ["candidates", "forces", "friction_loop", "gap_ladder", "parameters", "residuals", "tendon_friction", "tendon_shape", "trend", "where"]
 
@@ -33,6 +34,7 @@ _MEASURED, _MODEL, _REFERENCE, _BAND = "#d55e00", "#0072b2", "#9a9a9a", "#c6dbef
 _SIGMAS = 1.96
 
 
+@runtime_checkable
 class FittedCable(Protocol):
     """Cable of a fit that `parameters` can draw: values and standard errors by the keys of the robot file."""
 
@@ -44,6 +46,7 @@ class FittedCable(Protocol):
     def standard_errors(self) -> dict[str, float]: ...
 
 
+@runtime_checkable
 class Fitted(Protocol):
     """Fit that `parameters` can draw."""
 
@@ -54,8 +57,7 @@ class Fitted(Protocol):
 def forces(log: Log, result: ReplayResult | Compensation, cable: str, *, ax: _Axes | None = None) -> _Axes:
     """Draws a cable's force over time: the sensor's force, the compensated force, and the reference if there is one."""
     column = _column(log, result, cable)
-    if ax is None:
-        ax = _figure(1, (9.0, 4.0))[0]
+    ax = _one(ax, (9.0, 4.0))
     reference_n = log.reference_force_n[:, column]
     if np.isfinite(reference_n).any():
         ax.plot(log.time_s, reference_n, color=_REFERENCE, linewidth=2.4, label="reference")
@@ -95,6 +97,11 @@ def residuals(
 ) -> tuple[_Axes, _Axes]:
     """Draws the residual error of a cable after compensation into two axes: its distribution with the normal distribution of the same width, and its
     autocorrelation with the 95 % band of white noise. The result of a fit holds all the residuals of its logs."""
+    must_be("result", result, "a ReplayResult, a Compensation or a FitResult", ReplayResult, Compensation, FitResult)
+    must_be("cable", cable, "a text", str)
+    must_be("lag_count", lag_count, "a whole number", int, np.integer)
+    if lag_count < 1:
+        raise ConfigError(f"`lag_count` is {lag_count}; at least 1 lag is needed")
     if isinstance(result, FitResult):
         left_n = result.cable(cable).residuals_n
     else:
@@ -103,7 +110,7 @@ def residuals(
     left_n = left_n[np.isfinite(left_n)]
     if left_n.size <= lag_count:
         raise ShapeError(f"{cable} has a reference in {left_n.size} rows; more than lag_count = {lag_count} are needed")
-    histogram, correlogram = _figure(2, (11.0, 4.0)) if ax is None else ax
+    histogram, correlogram = _several(ax, 2, (11.0, 4.0))
     mean_n, sigma_n = float(left_n.mean()), float(left_n.std())
     histogram.hist(left_n, bins=80, density=True, color=_BAND, label="residual")
     if sigma_n > 0:
@@ -126,11 +133,11 @@ def residuals(
 def parameters(fit_result: Fitted, *, ax: Sequence[_Axes] | None = None) -> tuple[_Axes, ...]:
     """Draws fitted parameters with their 95 % intervals: one of `ax` for each parameter, one line for each cable. A value without a standard error
     has an open mark."""
+    if not isinstance(fit_result, Fitted) or not all(isinstance(cable, FittedCable) for cable in fit_result.cables):
+        raise refusal("the result of a fit", fit_result, "fit_result")
     cables = fit_result.cables
     keys = list(dict.fromkeys(key for cable in cables for key in cable.values))
-    panels = _figure(len(keys), (2.9 * len(keys), 1.2 + 0.32 * len(cables))) if ax is None else ax
-    if len(panels) != len(keys):
-        raise ShapeError(f"`ax` has {len(panels)} axes for {len(keys)} parameters: {', '.join(keys)}")
+    panels = _several(ax, len(keys), (2.9 * len(keys), 1.2 + 0.32 * len(cables)), f" for {', '.join(keys)}")
     places = np.arange(len(cables))
     for place, (panel, key) in enumerate(zip(panels, keys)):
         values = np.array([cable.values.get(key, np.nan) for cable in cables])
@@ -154,8 +161,7 @@ def gap_ladder(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -
     """Draws how the error on the held-out samples falls towards the noise: a bar for the given model after a fit, and one for each effect found, with
     the fraction of the gap that it and the effects above it close."""
     found = _told(result, cable)
-    if ax is None:
-        ax = _figure(1, (7.0, 1.4 + 0.4 * (1 + len(found.effects))))[0]
+    ax = _one(ax, (7.0, 1.4 + 0.4 * (1 + len(found.effects))))
     steps: list[tuple[str, float | None, float | None]] = [
         ("given model", found.before.rms_n if found.before else None, None)
     ]
@@ -179,8 +185,7 @@ def where(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -> _Ax
     beside the fraction of the samples there."""
     found = _told(result, cable)
     places = found.where
-    if ax is None:
-        ax = _figure(1, (7.0, 1.6 + 0.4 * max(1, len(places))))[0]
+    ax = _one(ax, (7.0, 1.6 + 0.4 * max(1, len(places))))
     rows = np.arange(len(places))
     of_gap = [100 * _share(place["share_of_excess"]) for place in places]
     of_samples = [100 * _share(place["share_of_samples"]) for place in places]
@@ -198,8 +203,7 @@ def candidates(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -
     addition to another."""
     found = _told(result, cable)
     tried = found.candidates
-    if ax is None:
-        ax = _figure(1, (7.0, 1.6 + 0.28 * max(1, len(tried))))[0]
+    ax = _one(ax, (7.0, 1.6 + 0.28 * max(1, len(tried))))
     kinds = {effect["kind"] for effect in found.effects}
     errors_n = [np.nan if of["held_out_rms_n"] is None else of["held_out_rms_n"] for of in tried]
     colors = [_MODEL if of["kind"] in kinds else _BAND for of in tried]
@@ -223,8 +227,7 @@ def candidates(result: DiscoverResult, cable: str, *, ax: _Axes | None = None) -
 def tendon_shape(result: ShapeResult, place: int = 0, *, ax: _Axes | None = None) -> _Axes:
     """Draws one of the selected shapes to scale: the disks for each source of friction, and the markers."""
     shape = _picked(result, place)
-    if ax is None:
-        ax = _figure(1, (6.5, 5.0))[0]
+    ax = _one(ax, (6.5, 5.0))
     for way in shape["ways"]:
         disks_m = np.vstack([[0.0, 0.0], way["disk_position_m"]])
         ax.plot(disks_m[:, 0], disks_m[:, 1], color=_WAYS[way["way"]], linewidth=1.4, label=way["way"])
@@ -241,8 +244,7 @@ def tendon_friction(result: ShapeResult, place: int = 0, *, ax: _Axes | None = N
     """Draws the friction at every hole of one of the selected shapes, as signed bars for each source of friction; positive if the tension on the base
     side is greater."""
     shape = _picked(result, place)
-    if ax is None:
-        ax = _figure(1, (8.0, 4.0))[0]
+    ax = _one(ax, (8.0, 4.0))
     ways = [way for way in shape["ways"] if way["way"] != "none"]
     width = 0.8 / len(ways) if ways else 0.8
     for index, way in enumerate(ways):
@@ -258,9 +260,9 @@ def tendon_friction(result: ShapeResult, place: int = 0, *, ax: _Axes | None = N
 def trend(result: Trend, robot: str, cable: str, parameter: str, *, ax: _Axes | None = None) -> _Axes:
     """Draws a parameter over the dates of the logs: values with their 95 % intervals, the line fitted to them, the date of each change with its
     interval, and limits. A value without a standard error has no bar."""
+    must_be("result", result, "a Trend", Trend)
     series = result.of(robot, cable, parameter)
-    if ax is None:
-        ax = _figure(1, (9.0, 4.0))[0]
+    ax = _one(ax, (9.0, 4.0))
     bars = _SIGMAS * np.where(np.isfinite(series.standard_errors), series.standard_errors, 0.0)
     ax.errorbar(series.date, series.values, yerr=bars, fmt="o", color=_MEASURED, markersize=3, linewidth=0.8, label="logs")
     steps = [int(np.searchsorted(series.date, _utc(change.date))) for change in series.changes if change.kind == "step"]
@@ -284,9 +286,11 @@ def _utc(date: datetime) -> Any:
 
 
 def _picked(result: ShapeResult, place: int) -> dict[str, Any]:
+    must_be("result", result, "a ShapeResult", ShapeResult)
+    must_be("place", place, "a whole number", int, np.integer)
     shapes = result.shapes
     if not -len(shapes) <= place < len(shapes):
-        raise ConfigError(f"there is no shape {place}; the result has {len(shapes)}")
+        raise ConfigError(f"there is no shape {place}, as `place` says; the result has {len(shapes)}")
     return shapes[place]
 
 
@@ -302,6 +306,8 @@ def _discovery(result: DiscoverResult, cable: str) -> Any:
 
 def _told(result: DiscoverResult, cable: str) -> CableDiscovery:
     """Returns the findings for a cable. Raises an error if no verdict is possible."""
+    must_be("result", result, "a DiscoverResult", DiscoverResult)
+    must_be("cable", cable, "a text", str)
     found = result.cable(cable)
     if found.missing is not None:
         raise FitError(f"nothing can be told of {cable}: {found.missing['cause']}. {found.missing['advice']}")
@@ -337,12 +343,41 @@ def _autocorrelation(signal: NDArray[np.float64], lag_count: int) -> NDArray[np.
 
 
 def _column(log: Log, result: ReplayResult | Compensation, cable: str) -> int:
+    must_be("log", log, "a Log", Log)
+    must_be("result", result, "a ReplayResult or a Compensation", ReplayResult, Compensation)
+    must_be("cable", cable, "a text", str)
     if cable not in log.cable_names:
         raise ConfigError(f"the log has no cable `{cable}`; it has {', '.join(log.cable_names)}")
     if result.frictionless_n.shape != log.sensor_force_n.shape:
         shapes = f"{result.frictionless_n.shape} and {log.sensor_force_n.shape}"
         raise ShapeError(f"result and log are not of the same run: their forces are of shape {shapes}")
     return log.cable_names.index(cable)
+
+
+def _one(ax: _Axes | None, size: tuple[float, float]) -> _Axes:
+    """Returns the given axes, or those of a new figure."""
+    if ax is None:
+        (ax,) = _figure(1, size)
+    _must_be_axes(ax)
+    return ax
+
+
+def _several(ax: Sequence[_Axes] | None, count: int, size: tuple[float, float], purpose: str = "") -> Sequence[_Axes]:
+    """Returns the given axes, or those of a new figure."""
+    if ax is None:
+        return _figure(count, size)
+    if not hasattr(ax, "__len__") or isinstance(ax, (str, bytes)):
+        raise refusal(f"{count} axes of matplotlib", ax, "ax")
+    if len(ax) != count:
+        raise ShapeError(f"`ax` has {len(ax)} axes; {count} are needed{purpose}")
+    for one in ax:
+        _must_be_axes(one)
+    return ax
+
+
+def _must_be_axes(ax: Any) -> None:
+    if not hasattr(ax, "get_legend_handles_labels"):
+        raise refusal("axes of matplotlib", ax, "ax")
 
 
 def _figure(count: int, size: tuple[float, float], *, heights: Sequence[float] | None = None) -> Sequence[Any]:

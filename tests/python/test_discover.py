@@ -185,7 +185,7 @@ def test_what_is_misspelt_is_answered(robot, log, result):
         fric.plot.where(result, "wich")
     with pytest.raises(TypeError, match="progres"):
         fric.discover(robot, log, progres=True)
-    with pytest.raises(TypeError, match="a Log, a path, or a list of them, not as"):
+    with pytest.raises(TypeError, match="`log` must be a Log, a path, or a list of them; what came is"):
         fric.discover(robot, 3)
     with pytest.raises(fric.ConfigError, match="given twice"):
         fric.discover(robot, [log, log])

@@ -215,7 +215,7 @@ def test_what_is_misspelt_is_answered_with_the_nearest(robot, log, place):
         fric.residual_function(robot, log, "cabel1")
     with pytest.raises(TypeError):
         fric.fit(robot, log, "wrench")
-    with pytest.raises(TypeError, match="a Log, a path, or a list of them, not as"):
+    with pytest.raises(TypeError, match="`log` must be a Log, a path, or a list of them; what came is"):
         fric.fit(robot, 3)
     with pytest.raises(fric.ConfigError, match="empty list"):
         fric.fit(robot, [])

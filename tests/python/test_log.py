@@ -216,7 +216,7 @@ def test_what_cannot_be_read_is_told(tmp_path, robot, log):
         fric.read_log(tmp_path / "none.mcap")
     with pytest.raises(fric.LogError, match="is not an MCAP recording"):
         fric.read_log(ROBOT)
-    with pytest.raises(TypeError, match="a path or several paths, not as <class 'int'>"):
+    with pytest.raises(TypeError, match="`paths` must be a path or a list of paths; what came is 3"):
         fric.read_log(3)
     with pytest.raises(fric.OutputError, match=r"cannot be written: No such file or directory \(os error 2\)$"):
         fric.replay(log.robot, log, output=tmp_path / "nowhere" / "out.mcap")

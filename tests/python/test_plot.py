@@ -68,7 +68,7 @@ def test_parameters_with_intervals():
     assert np.allclose(intervals, [[0.016 - 0.00196, 0.016 + 0.00196], [0.016 - 0.00392, 0.016 + 0.00392]])
     assert len(sigma.collections[0].get_segments()) == 1
     assert sigma.get_lines()[-1].get_xydata().tolist() == [[1000.0, 1.0]]
-    with pytest.raises(fric.ShapeError, match="`ax` has 1 axes for 2 parameters: mu, sigma_n_per_m"):
+    with pytest.raises(fric.ShapeError, match="`ax` has 1 axes; 2 are needed for mu, sigma_n_per_m"):
         fric.plot.parameters(fit, ax=[mu])
 
 

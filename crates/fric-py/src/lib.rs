@@ -7,6 +7,7 @@
 #![allow(clippy::needless_pass_by_value, reason = "values come as the interpreter passes them")]
 #![allow(clippy::too_many_arguments, reason = "they are keywords in Python")]
 
+mod arguments;
 mod arrays;
 mod catalogue;
 mod compensator;

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
+from .._arguments import must_be
 from .._errors import ConfigError
 from .._fric import _unknown_name
 from .._read_only import read_only
@@ -95,6 +96,7 @@ _Cable = TypeVar("_Cable", bound=_Named)
 
 def of_cable(cables: tuple[_Cable, ...], name: str) -> _Cable:
     """Returns the cable with the given name."""
+    must_be("name", name, "a text", str)
     for cable in cables:
         if cable.name == name:
             return cable

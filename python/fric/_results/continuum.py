@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from .._arguments import must_be
 from .._errors import ConfigError
 from .._fric import Manipulator, TendonRun, _unknown_name
 from .base import Result, Shown, Value, counted
@@ -147,6 +148,7 @@ class ShapeResult(Result):
         return self._of_way(way, "bend_rad")
 
     def _of_way(self, way: str, key: str) -> NDArray[np.float64]:
+        must_be("way", way, "a text", str)
         if way not in self._series:
             raise ConfigError(_unknown_name("way", way, list(self.ways)))
         values: NDArray[np.float64] = self._series[way][key]

@@ -8,6 +8,7 @@ use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
 use super::Manipulator;
+use crate::arguments::frozen;
 use crate::arrays::{Axis, Wanted, numbers};
 use crate::errors::Outcome;
 use crate::results;
@@ -23,7 +24,7 @@ use crate::results;
 #[pyfunction]
 pub fn continuum_calibrate(
     py: Python<'_>,
-    manipulator: &Manipulator,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
     load_n: &Bound<'_, PyAny>,
     shift_nm: &Bound<'_, PyAny>,
 ) -> Outcome<Py<PyAny>> {

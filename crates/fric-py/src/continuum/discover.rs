@@ -7,6 +7,7 @@ use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
 use super::{ARRAYS, Manipulator, TendonRun, check_disks, flat};
+use crate::arguments::frozen;
 use crate::arrays::{fixed, fixed_rows};
 use crate::errors::Outcome;
 use crate::log;
@@ -16,7 +17,11 @@ use crate::watch::with_own_threads;
 /// Finds what the file of a manipulator lacks, from a run with the tension at the base and gratings: friction at the holes, their memory, a drifting
 /// grating, a hole with its own μ. With markers, it also finds wrong values of bending, loads and measurement.
 #[pyfunction]
-pub fn continuum_discover(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<Py<PyAny>> {
+pub fn continuum_discover(
+    py: Python<'_>,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
+    #[pyo3(from_py_with = frozen)] run: &TendonRun,
+) -> Outcome<Py<PyAny>> {
     check_disks(manipulator, &run.run)?;
     let (file, files, run) = (&manipulator.file, run.files(), &run.run);
     let source = files.first().map_or_else(|| ARRAYS.to_owned(), |path| shown_path(path));

@@ -10,6 +10,7 @@ use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
 use super::{Manipulator, TendonRun, check_disks};
+use crate::arguments::{argument, frozen, refused};
 use crate::errors::{Fault, Outcome};
 use crate::log;
 use crate::results;
@@ -32,15 +33,14 @@ use crate::watch::with_own_threads;
 #[pyo3(signature = (manipulator, runs, *, parameters=None))]
 pub fn continuum_fit(
     py: Python<'_>,
-    manipulator: &Manipulator,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
     runs: &Bound<'_, PyAny>,
-    parameters: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] parameters: Option<Vec<String>>,
 ) -> Outcome<Py<PyAny>> {
     let all: Vec<Bound<'_, TendonRun>> = match runs.cast::<TendonRun>() {
         Ok(one) => vec![one.clone()],
         Err(_) => runs.extract()?,
     };
-    let named = |names: Vec<String>| Quantity::all_named(names.iter().map(String::as_str)).map_err(Fault::config);
     let options = TendonFitOptions { quantities: parameters.map(named).transpose()? };
     let measured: Vec<Run> = all.iter().map(|run| run.get().run.clone()).collect();
     let sources: Vec<String> = all.iter().map(|run| run.get().name().to_owned()).collect();

@@ -8,6 +8,7 @@ use fric_work::report::continuum as report;
 use pyo3::prelude::*;
 
 use super::{Manipulator, TendonRun, flat, guarded, in_base_frame};
+use crate::arguments::frozen;
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, numbers};
 use crate::errors::Outcome;
 use crate::log;
@@ -22,7 +23,11 @@ use crate::results;
 /// >>> result.friction_n.shape, bool(result.directions_differ.any())
 /// ((178, 8), True)
 #[pyfunction]
-pub fn continuum_friction(py: Python<'_>, manipulator: &Manipulator, run: &TendonRun) -> Outcome<Py<PyAny>> {
+pub fn continuum_friction(
+    py: Python<'_>,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
+    #[pyo3(from_py_with = frozen)] run: &TendonRun,
+) -> Outcome<Py<PyAny>> {
     let files = run.files();
     let run = &in_base_frame(manipulator, &run.run)?;
     run.check_sizes(manipulator.file.params())?;

@@ -10,6 +10,7 @@ use fric_work::verdict::counted;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
+use crate::arguments::{argument, text};
 use crate::arrays::fixed;
 use crate::errors::Outcome;
 use crate::travel::Reduced;
@@ -44,7 +45,7 @@ impl Manipulator {
 impl Manipulator {
     /// Reads a manipulator file.
     #[staticmethod]
-    fn read(path: PathBuf) -> Outcome<Self> {
+    fn read(#[pyo3(from_py_with = argument)] path: PathBuf) -> Outcome<Self> {
         let text = fric_core::text_file::read(&path)
             .map_err(|source| ManipulatorFileError::Read { path: path.clone(), source })?;
         Self::parse(text, &path.display().to_string())
@@ -52,7 +53,7 @@ impl Manipulator {
 
     /// Creates a manipulator from the text of a manipulator file.
     #[staticmethod]
-    fn from_toml(text: &str) -> Outcome<Self> {
+    fn from_toml(#[pyo3(from_py_with = text)] text: &str) -> Outcome<Self> {
         Self::parse(text.to_owned(), "text")
     }
 
@@ -63,7 +64,11 @@ impl Manipulator {
 
     /// Writes the manipulator file, completely or not at all; an existing file is replaced only with `force`.
     #[pyo3(signature = (path, *, force = false))]
-    fn write(&self, path: PathBuf, force: bool) -> Outcome {
+    fn write(
+        &self,
+        #[pyo3(from_py_with = argument)] path: PathBuf,
+        #[pyo3(from_py_with = argument)] force: bool,
+    ) -> Outcome {
         let inputs: [PathBuf; 0] = [];
         Ok(OutputFile::create(&path, &inputs, force)?.finish_with(&self.text)?)
     }

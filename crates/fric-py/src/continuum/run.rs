@@ -10,6 +10,7 @@ use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 
 use super::{ARRAYS, Manipulator};
+use crate::arguments::{argument, frozen};
 use crate::arrays::{Axis, Wanted, array, fixed, fixed_rows, numbers};
 use crate::errors::Outcome;
 use crate::log;
@@ -36,7 +37,7 @@ impl TendonRun {
     #[staticmethod]
     #[pyo3(signature = (manipulator, *, time_s, tension_base_n=None, shift_nm=None, shift_reference_nm=None, marker_m=None))]
     fn from_arrays(
-        manipulator: &Manipulator,
+        #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
         time_s: &Bound<'_, PyAny>,
         tension_base_n: Option<&Bound<'_, PyAny>>,
         shift_nm: Option<&Bound<'_, PyAny>>,
@@ -197,7 +198,11 @@ fn bits(run: &Run) -> Vec<u64> {
 /// The columns are `time_s`, `tension_base_n`, `shift_1_nm` …, `shift_reference_nm`, `marker_1_x_m`, `marker_1_y_m` …; any group except the time may
 /// be missing.
 #[pyfunction]
-pub fn continuum_read_run(py: Python<'_>, path: PathBuf, manipulator: &Manipulator) -> Outcome<TendonRun> {
+pub fn continuum_read_run(
+    py: Python<'_>,
+    #[pyo3(from_py_with = argument)] path: PathBuf,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
+) -> Outcome<TendonRun> {
     let count = manipulator.file.params().disk_count();
     let table = py.detach(|| NumberTable::read(&path, &columns::of_run(count)))?;
     log::warn(py, &table.warnings)?;
@@ -210,8 +215,8 @@ pub fn continuum_read_run(py: Python<'_>, path: PathBuf, manipulator: &Manipulat
 #[expect(clippy::type_complexity, reason = "a pair of arrays")]
 pub fn continuum_read_loads(
     py: Python<'_>,
-    path: PathBuf,
-    manipulator: &Manipulator,
+    #[pyo3(from_py_with = argument)] path: PathBuf,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
 ) -> Outcome<(Py<PyArray1<f64>>, Py<PyArray2<f64>>)> {
     let count = manipulator.file.params().disk_count();
     let table = py.detach(|| NumberTable::read(&path, &columns::of_calibration(count)))?;

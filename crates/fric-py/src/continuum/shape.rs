@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::{Manipulator, TendonRun, guarded, in_base_frame};
+use crate::arguments::{argument, frozen};
 use crate::arrays::{array, fixed, fixed_rows};
 use crate::errors::{Fault, Outcome};
 use crate::log;
@@ -36,12 +37,12 @@ use crate::results;
 #[pyo3(signature = (manipulator, run, *, shapes=6, at_s=None, mixed=false, ways=None))]
 pub fn continuum_shape(
     py: Python<'_>,
-    manipulator: &Manipulator,
-    run: &TendonRun,
-    shapes: usize,
-    at_s: Option<Vec<f64>>,
-    mixed: bool,
-    ways: Option<Vec<String>>,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
+    #[pyo3(from_py_with = frozen)] run: &TendonRun,
+    #[pyo3(from_py_with = argument)] shapes: usize,
+    #[pyo3(from_py_with = argument)] at_s: Option<Vec<f64>>,
+    #[pyo3(from_py_with = argument)] mixed: bool,
+    #[pyo3(from_py_with = argument)] ways: Option<Vec<String>>,
 ) -> Outcome<Py<PyAny>> {
     let files = run.files();
     let run = &in_base_frame(manipulator, &run.run)?;

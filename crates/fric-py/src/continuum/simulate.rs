@@ -6,6 +6,7 @@ use fric_tendon_lab::{Run, as_measured};
 use pyo3::prelude::*;
 
 use super::{Manipulator, TendonRun};
+use crate::arguments::{argument, frozen, text};
 use crate::arrays::{fixed, fixed_rows};
 use crate::errors::{Fault, Outcome};
 use crate::results;
@@ -26,13 +27,13 @@ use crate::results;
 ))]
 pub fn continuum_simulate(
     py: Python<'_>,
-    manipulator: &Manipulator,
-    run: &str,
-    seed: u64,
-    greatest_tension_n: f64,
-    mu_spread_ratio: f64,
-    grating_noise_nm: f64,
-    marker_noise_m: f64,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
+    #[pyo3(from_py_with = text)] run: &str,
+    #[pyo3(from_py_with = argument)] seed: u64,
+    #[pyo3(from_py_with = argument)] greatest_tension_n: f64,
+    #[pyo3(from_py_with = argument)] mu_spread_ratio: f64,
+    #[pyo3(from_py_with = argument)] grating_noise_nm: f64,
+    #[pyo3(from_py_with = argument)] marker_noise_m: f64,
 ) -> Outcome<Py<PyAny>> {
     let known = || Experiment::ALL.into_iter();
     let experiment = known()

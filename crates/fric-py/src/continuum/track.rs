@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use super::Manipulator;
 use super::static_model::goals;
+use crate::arguments::{argument, frozen};
 use crate::arrays::{Axis, array};
 use crate::errors::Outcome;
 use crate::results;
@@ -27,11 +28,11 @@ use crate::results;
 #[pyo3(signature = (manipulator, *, bend_rad=None, tip_m=None, seed=0, mu_spread_ratio=0.1))]
 pub fn continuum_track(
     py: Python<'_>,
-    manipulator: &Manipulator,
+    #[pyo3(from_py_with = frozen)] manipulator: &Manipulator,
     bend_rad: Option<&Bound<'_, PyAny>>,
     tip_m: Option<&Bound<'_, PyAny>>,
-    seed: u64,
-    mu_spread_ratio: f64,
+    #[pyo3(from_py_with = argument)] seed: u64,
+    #[pyo3(from_py_with = argument)] mu_spread_ratio: f64,
 ) -> Outcome<Py<PyAny>> {
     let wanted = goals(bend_rad, tip_m, &[Axis::Rows])?;
     let goals = if bend_rad.is_some() {

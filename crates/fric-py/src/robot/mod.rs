@@ -17,6 +17,7 @@ use pyo3::types::{PyDict, PyTuple, PyType};
 use self::edit::Step;
 pub use self::tables::{Cable, Friction, LogPaths, Monitor, Platform};
 use self::tables::{Keys, Place, misspelt, pairs};
+use crate::arguments::{argument, text};
 use crate::errors::{Fault, Outcome};
 
 /// A cable robot: the content of its robot file.
@@ -49,7 +50,7 @@ const KEYS: Keys = Keys { class: "Robot", all: &["name", "cycle_s", "platform", 
 impl Robot {
     /// Reads a robot file.
     #[staticmethod]
-    fn read(path: PathBuf) -> Outcome<Self> {
+    fn read(#[pyo3(from_py_with = argument)] path: PathBuf) -> Outcome<Self> {
         let text =
             fric_core::text_file::read(&path).map_err(|source| RobotFileError::Read { path: path.clone(), source })?;
         Self::parse(text, &path.display().to_string())
@@ -57,7 +58,7 @@ impl Robot {
 
     /// Creates a robot from the text of a robot file.
     #[staticmethod]
-    fn from_toml(text: &str) -> Outcome<Self> {
+    fn from_toml(#[pyo3(from_py_with = text)] text: &str) -> Outcome<Self> {
         Self::parse(text.to_owned(), "text")
     }
 
@@ -71,7 +72,11 @@ impl Robot {
 
     /// Writes the robot file, completely or not at all; an existing file is replaced only with `force`.
     #[pyo3(signature = (path, *, force = false))]
-    fn write(&self, path: PathBuf, force: bool) -> Outcome {
+    fn write(
+        &self,
+        #[pyo3(from_py_with = argument)] path: PathBuf,
+        #[pyo3(from_py_with = argument)] force: bool,
+    ) -> Outcome {
         let text = self.to_toml()?;
         // The file that it was read from may be replaced like any other.
         let inputs: [PathBuf; 0] = [];
@@ -122,7 +127,7 @@ impl Robot {
     }
 
     /// Returns the cable with this name.
-    fn cable(slf: &Bound<'_, Self>, name: &str) -> Outcome<Cable> {
+    fn cable(slf: &Bound<'_, Self>, #[pyo3(from_py_with = text)] name: &str) -> Outcome<Cable> {
         Ok(cable_at(slf, slf.borrow().cable_index(name)?))
     }
 

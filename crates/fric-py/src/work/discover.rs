@@ -8,6 +8,7 @@ use fric_work::provenance::Provenance;
 use fric_work::report::discovery;
 use pyo3::prelude::*;
 
+use crate::arguments::{argument, object, text};
 use crate::arrays::fixed;
 use crate::errors::Outcome;
 use crate::log;
@@ -53,11 +54,11 @@ use crate::work::runs::{Runs, named_zero};
     text_signature = "(robot, log, *, reference=\"forces\", per_log=None, empirical=True, progress=False)"
 )]
 pub fn discover(
-    robot: &Bound<'_, Robot>,
+    #[pyo3(from_py_with = object)] robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
-    reference: &str,
-    per_log: Option<Vec<String>>,
-    empirical: bool,
+    #[pyo3(from_py_with = text)] reference: &str,
+    #[pyo3(from_py_with = argument)] per_log: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] empirical: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();

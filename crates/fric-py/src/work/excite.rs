@@ -12,6 +12,7 @@ use fric_work::set_points::SetPointTable;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::arguments::{argument, object, refused};
 use crate::arrays::{fixed, fixed_rows};
 use crate::errors::{Fault, Outcome};
 use crate::log;
@@ -79,20 +80,20 @@ impl SetPoints {
     text_signature = "(robot, *, box_m=None, max_speed_m_per_s=None, max_acceleration_m_per_s2=None, min_tension_n=None, max_tension_n=None, for_=None, separate=None, determine=None, duration_s=None, cables=None, noise_n=None, output=None, force=False, progress=False)"
 )]
 pub fn excite(
-    robot: &Bound<'_, Robot>,
-    box_m: Option<[[f64; 3]; 2]>,
-    max_speed_m_per_s: Option<f64>,
-    max_acceleration_m_per_s2: Option<f64>,
-    min_tension_n: Option<f64>,
-    max_tension_n: Option<f64>,
+    #[pyo3(from_py_with = object)] robot: &Bound<'_, Robot>,
+    #[pyo3(from_py_with = argument)] box_m: Option<[[f64; 3]; 2]>,
+    #[pyo3(from_py_with = argument)] max_speed_m_per_s: Option<f64>,
+    #[pyo3(from_py_with = argument)] max_acceleration_m_per_s2: Option<f64>,
+    #[pyo3(from_py_with = argument)] min_tension_n: Option<f64>,
+    #[pyo3(from_py_with = argument)] max_tension_n: Option<f64>,
     for_: Option<&Bound<'_, PyAny>>,
-    separate: Option<Vec<String>>,
-    determine: Option<Vec<String>>,
-    duration_s: Option<f64>,
-    cables: Option<Vec<String>>,
-    noise_n: Option<f64>,
-    output: Option<PathBuf>,
-    force: bool,
+    #[pyo3(from_py_with = argument)] separate: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] determine: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] duration_s: Option<f64>,
+    #[pyo3(from_py_with = argument)] cables: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] noise_n: Option<f64>,
+    #[pyo3(from_py_with = argument)] output: Option<PathBuf>,
+    #[pyo3(from_py_with = argument)] force: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();
@@ -103,9 +104,9 @@ pub fn excite(
     let found = for_.map(found_text).transpose()?;
     let request = match (&found, &separate, &determine) {
         (None, None, None) => None,
-        (Some(text), None, None) => Some(Request::Found(text)),
-        (None, Some(kinds), None) => Some(Request::Separate(kinds)),
-        (None, None, Some(names)) => Some(Request::Determine(names)),
+        (Some(text), None, None) => Some(("for_", Request::Found(text))),
+        (None, Some(kinds), None) => Some(("separate", Request::Separate(kinds))),
+        (None, None, Some(names)) => Some(("determine", Request::Determine(names))),
         _ => return Err(Fault::config("`for_`, `separate` and `determine` are three questions; ask one of them")),
     };
     let unused = [("duration_s", duration_s.is_some()), ("cables", cables.is_some()), ("noise_n", noise_n.is_some())];
@@ -116,9 +117,9 @@ pub fn excite(
     let inputs: [PathBuf; 0] = [];
     let created = output.map(|path| OutputFile::create(&path, &inputs, force)).transpose()?;
     let (mut excitation, expected) = match request {
-        Some(request) => {
+        Some((asked, request)) => {
             let questions = questions(&file, request, cables.as_deref(), noise_n);
-            let questions = questions.map_err(|error| Fault::config(error.to_string()))?;
+            let questions = questions.map_err(|error| Fault::config(format!("`{asked}`: {error}")))?;
             let duration_s = duration_s.unwrap_or(STANDARD_DURATION_S);
             let Experiment { excitation, forecasts } =
                 watch.fit(|progress| design(&file, &options, duration_s, &questions, progress))??;
@@ -190,5 +191,7 @@ fn found_text(found: &Bound<'_, PyAny>) -> Outcome<String> {
     if found.hasattr("to_json")? {
         return Ok(found.call_method0("to_json")?.extract()?);
     }
-    Ok(found.py().import("json")?.call_method1("dumps", (found,))?.extract()?)
+    let dumped = found.py().import("json")?.call_method1("dumps", (found,));
+    let text = dumped.and_then(|text| text.extract());
+    text.map_err(|_| refused("for_", "a DiscoverResult, or its JSON as a dict or text", found))
 }

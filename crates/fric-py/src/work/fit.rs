@@ -9,6 +9,7 @@ use fric_work::provenance::Provenance;
 use fric_work::report;
 use pyo3::prelude::*;
 
+use crate::arguments::{argument, object, text};
 use crate::arrays::{array, fixed};
 use crate::errors::{Fault, Outcome};
 use crate::log;
@@ -50,12 +51,12 @@ pub fn named_reference(name: &str) -> Outcome<Reference> {
     text_signature = "(robot, log, *, reference=\"forces\", parameters=None, per_log=None, huber=False, progress=False)"
 )]
 pub fn fit(
-    robot: &Bound<'_, Robot>,
+    #[pyo3(from_py_with = object)] robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
-    reference: &str,
-    parameters: Option<Vec<String>>,
-    per_log: Option<Vec<String>>,
-    huber: bool,
+    #[pyo3(from_py_with = text)] reference: &str,
+    #[pyo3(from_py_with = argument)] parameters: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] per_log: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] huber: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();

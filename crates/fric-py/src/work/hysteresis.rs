@@ -5,6 +5,7 @@ use fric_work::provenance::Provenance;
 use fric_work::report::hysteresis as report;
 use pyo3::prelude::*;
 
+use crate::arguments::object;
 use crate::errors::Outcome;
 use crate::log::{self, Log};
 use crate::results;
@@ -23,7 +24,7 @@ use crate::watch::Watch;
 #[pyfunction]
 #[pyo3(signature = (robot, log, *, progress=None), text_signature = "(robot, log, *, progress=False)")]
 pub fn hysteresis(
-    robot: &Bound<'_, Robot>,
+    #[pyo3(from_py_with = object)] robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {

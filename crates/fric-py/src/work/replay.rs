@@ -15,6 +15,7 @@ use fric_work::report::{Series, errors};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
+use crate::arguments::{argument, object};
 use crate::compensator::compensation;
 use crate::errors::{Fault, Outcome};
 use crate::log::{self, Log};
@@ -38,11 +39,11 @@ use crate::watch::Watch;
     text_signature = "(robot, log, *, output=None, force=False, correct=False, progress=False)"
 )]
 pub fn replay(
-    robot: &Bound<'_, Robot>,
+    #[pyo3(from_py_with = object)] robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
-    output: Option<PathBuf>,
-    force: bool,
-    correct: bool,
+    #[pyo3(from_py_with = argument)] output: Option<PathBuf>,
+    #[pyo3(from_py_with = argument)] force: bool,
+    #[pyo3(from_py_with = argument)] correct: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Py<PyAny>> {
     let py = robot.py();

@@ -7,6 +7,7 @@ use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use crate::arguments::{argument, object, text};
 use crate::arrays::{Axis, Wanted, array, fixed, fixed_rows, numbers};
 use crate::errors::{Fault, Outcome};
 use crate::robot::Robot;
@@ -189,10 +190,10 @@ impl ResidualFunction {
     text_signature = "(robot, log, cable, *, parameters=None, progress=False)"
 )]
 pub fn residual_function(
-    robot: &Bound<'_, Robot>,
+    #[pyo3(from_py_with = object)] robot: &Bound<'_, Robot>,
     log: &Bound<'_, PyAny>,
-    cable: &str,
-    parameters: Option<Vec<String>>,
+    #[pyo3(from_py_with = text)] cable: &str,
+    #[pyo3(from_py_with = argument)] parameters: Option<Vec<String>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<ResidualFunction> {
     let py = robot.py();

@@ -3,10 +3,10 @@
 use fric_core::robot::unknown_name;
 use fric_lab::columns::SampleColumns;
 use fric_lab::simulate::{Disturbance, HiddenEffect, HiddenError, Run, Simulation, SimulationOptions};
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyString;
+use pyo3::types::{PyMapping, PyString};
 
+use crate::arguments::{argument, object, refused, text};
 use crate::errors::{Fault, Outcome};
 use crate::log::{self, Log};
 use crate::robot::Robot;
@@ -31,21 +31,21 @@ use crate::watch::{STRIDE, Watch};
     text_signature = "(robot, *, run=\"identification\", seed=0, duration_s=None, effects=(), disturbances=(), sensor_noise_n=0.02, reference_noise_n=0.01, mu_spread_ratio=0.0, sensor_wander_n=0.0, reference_wander_n=0.0, wander_s=2.0, hand_n=0.0, length_noise_m=0.0, length_resolution_m=0.0, progress=False)"
 )]
 pub fn simulate(
-    robot: &Bound<'_, Robot>,
-    run: &str,
-    seed: u64,
-    duration_s: Option<f64>,
+    #[pyo3(from_py_with = object)] robot: &Bound<'_, Robot>,
+    #[pyo3(from_py_with = text)] run: &str,
+    #[pyo3(from_py_with = argument)] seed: u64,
+    #[pyo3(from_py_with = argument)] duration_s: Option<f64>,
     effects: Option<&Bound<'_, PyAny>>,
     disturbances: Option<&Bound<'_, PyAny>>,
-    sensor_noise_n: f64,
-    reference_noise_n: f64,
-    mu_spread_ratio: f64,
-    sensor_wander_n: f64,
-    reference_wander_n: f64,
-    wander_s: f64,
-    hand_n: f64,
-    length_noise_m: f64,
-    length_resolution_m: f64,
+    #[pyo3(from_py_with = argument)] sensor_noise_n: f64,
+    #[pyo3(from_py_with = argument)] reference_noise_n: f64,
+    #[pyo3(from_py_with = argument)] mu_spread_ratio: f64,
+    #[pyo3(from_py_with = argument)] sensor_wander_n: f64,
+    #[pyo3(from_py_with = argument)] reference_wander_n: f64,
+    #[pyo3(from_py_with = argument)] wander_s: f64,
+    #[pyo3(from_py_with = argument)] hand_n: f64,
+    #[pyo3(from_py_with = argument)] length_noise_m: f64,
+    #[pyo3(from_py_with = argument)] length_resolution_m: f64,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Log> {
     let py = robot.py();
@@ -132,10 +132,11 @@ const DISTURBANCE: Kind<Disturbance> = Kind {
 
 fn all_hidden<T>(given: Option<&Bound<'_, PyAny>>, kind: &Kind<T>) -> Outcome<Vec<T>> {
     let Some(given) = given else { return Ok(Vec::new()) };
-    let items = given.try_iter().map_err(|_| {
-        let (argument, class) = (kind.argument, given.get_type());
-        PyTypeError::new_err(format!("`{argument}` is a list of dicts or texts, not {class}"))
-    })?;
+    let refuse = || refused(kind.argument, "a list of dicts or texts", given);
+    if given.is_instance_of::<PyString>() || given.is_instance_of::<PyMapping>() {
+        return Err(refuse());
+    }
+    let items = given.try_iter().map_err(|_| refuse())?;
     items.map(|item| hidden(&item?, kind)).collect()
 }
 
@@ -146,10 +147,10 @@ fn hidden<T>(item: &Bound<'_, PyAny>, kind: &Kind<T>) -> Outcome<T> {
         return Ok(parse(text.to_str()?)?);
     }
     let malformed = || Fault::config(format!("{noun} is a dict such as {example}, or a text"));
-    let items = item.cast::<pyo3::types::PyMapping>().map_err(|_| malformed())?.items()?;
+    let items = item.cast::<PyMapping>().map_err(|_| malformed())?.items()?;
     let (mut name, mut values) = (None, Vec::new());
     for item in items {
-        let (key, value): (String, Bound<'_, PyAny>) = item.extract()?;
+        let (key, value): (String, Bound<'_, PyAny>) = item.extract().map_err(|_| malformed())?;
         if key == "kind" {
             name = Some(value.extract::<String>().map_err(|_| malformed())?);
         } else {
