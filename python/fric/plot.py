@@ -73,9 +73,8 @@ def friction_loop(log: Log, result: ReplayResult | Compensation, cable: str, *, 
     """Draws a cable's friction over its displacement (the hysteresis loop): the measured friction, which is the reference minus the sensor force
     expected without friction, and that of the model. Both include the offset."""
     column = _column(log, result, cable)
-    if ax is None:
-        ax = _figure(1, (6.5, 4.5))[0]
-    displacement_mm = 1e3 * (log.length_m[:, column] - log.length_m[0, column])
+    ax = _one(ax, (6.5, 4.5))
+    displacement_mm = 1e3 * (log.length_m[:, column] - log.length_m[:1, column])
     frictionless_n = result.frictionless_n[:, column]
     measured_n = log.reference_force_n[:, column] - frictionless_n
     if np.isfinite(measured_n).any():

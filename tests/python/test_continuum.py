@@ -1,5 +1,6 @@
 """Tendons through disks: what Python gives is what the command line gives, and what the truth is."""
 
+import copy
 import re
 
 import fric
@@ -30,6 +31,14 @@ def calibrated(arm, tendon):
 @pytest.fixture(scope="module")
 def shapes(calibrated, tendon):
     return continuum.shape(calibrated, tendon.run, mixed=True, shapes=4)
+
+
+def test_a_run_counts_once(arm, tendon):
+    for runs in ([tendon.run, tendon.run], [tendon.run, copy.copy(tendon.run)]):
+        with pytest.raises(fric.ConfigError, match="runs 1 and 2 of `runs` are the same, and its samples would count twice"):
+            continuum.fit(arm, runs)
+    with pytest.raises(fric.ConfigError, match="`runs` is an empty list; give at least one run"):
+        continuum.fit(arm, [])
 
 
 def test_calibration_is_numpy_s_line(arm, tendon):

@@ -278,7 +278,7 @@ def test_speed_that_is_not_given_is_derived(log):
     [
         (
             {"stamp_nanos": np.arange(4) * 1e6},
-            "`stamp_nanos` must be whole numbers (int64) of shape (N,), nanoseconds since 1970; what came is float64",
+            "`stamp_nanos` must be whole numbers (int64) of shape (N,), nanoseconds since 1970, or datetime64; what came is float64",
         ),
         ({"stamp_nanos": [0, 2, 2, 3]}, "`stamp_nanos` does not ascend from row 1 to row 2"),
         ({"sensor_force_n": np.zeros((3, 2))}, "`sensor_force_n` must be real numbers (float64) of shape (4, 2)"),

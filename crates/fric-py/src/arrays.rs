@@ -49,6 +49,19 @@ pub fn integers(wanted: &Wanted<'_>, value: &Bound<'_, PyAny>) -> Outcome<Vec<i6
     checked(wanted, value, b"iu", "whole numbers", "int64")
 }
 
+/// Returns times in nanoseconds since 1970, which are whole numbers or dates of NumPy (datetime64).
+pub fn stamps_nanos(wanted: &Wanted<'_>, value: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
+    let numpy = value.py().import("numpy")?;
+    let dates = numpy.call_method1("asarray", (value,)).ok();
+    let dates = dates.filter(|array| array.cast::<PyUntypedArray>().is_ok_and(|array| array.dtype().kind() == b'M'));
+    let Some(dates) = dates else { return integers(wanted, value) };
+    if numpy.call_method1("isnat", (&dates,))?.call_method0("any")?.is_truthy()? {
+        return Err(Fault::shape(format!("`{}` has a date that is missing (NaT); leave out its row", wanted.name)));
+    }
+    let nanos = dates.call_method1("astype", ("datetime64[ns]",))?.call_method1("astype", ("int64",))?;
+    integers(wanted, &nanos)
+}
+
 fn is_masked(numpy: &Bound<'_, PyModule>, value: &Bound<'_, PyAny>) -> Outcome<bool> {
     if value.get_type().is(&numpy.getattr("ndarray")?) {
         return Ok(false);
@@ -77,7 +90,8 @@ fn checked<T: Element + Copy>(
     };
     let lengths = array.shape();
     let has_shape = lengths.len() == wanted.shape.len() && wanted.shape.iter().zip(lengths).all(fits);
-    let has_type = kinds.contains(&array.dtype().kind());
+    // An empty list has no type of its own.
+    let has_type = kinds.contains(&array.dtype().kind()) || lengths.contains(&0);
     if !has_shape || !has_type {
         let lengths: Vec<String> = lengths.iter().map(ToString::to_string).collect();
         let text = refusal(format!("{} of shape {}", array.dtype().str()?, tuple_text(&lengths)));

@@ -3,6 +3,7 @@
 mod pickling;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use fric_core::Pose;
 use fric_core::robot::unknown_name;
@@ -16,15 +17,16 @@ use pyo3::exceptions::{PyKeyError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PySlice, PyTuple};
 
-use crate::arrays::{Axis, Wanted, fixed, fixed_rows, integers, numbers};
+use crate::arguments::{argument, refused};
+use crate::arrays::{Axis, Wanted, fixed, fixed_rows, numbers, stamps_nanos};
 use crate::errors::{Fault, Outcome};
 use crate::robot::{Robot, cables_in_words};
 use crate::watch::{STRIDE, Watch};
 
 /// The samples of a log, joined on the times of the cable signal: read-only arrays with one row per sample.
 ///
-/// Columns of cable arrays are the cables in the order of `cable_names`. Unknown values are NaN. `log[2.0:8.5]` is the part between two times,
-/// `len(log)` the number of rows; `"position_m" in log` says whether a signal is known, and iteration gives the names of the known ones.
+/// Columns of cable arrays are the cables in the order of `cable_names`. Unknown values are NaN. `log[2.0:8.5]` is the part between two times, s since
+/// the first row, which are 0 or more; `log[log.time_s[-1] - 1.0:]` is the last second. `len(log)` is the number of rows; `"position_m" in log` says whether a signal is known, and iteration gives the names of the known ones.
 ///
 /// >>> import numpy as np
 /// >>> log = Log.from_arrays(
@@ -71,6 +73,8 @@ pub struct Log {
     #[pyo3(get)]
     robot: Option<Py<Robot>>,
     cable_names: Vec<String>,
+    /// Shared by all parts of one log.
+    origin: Arc<()>,
     /// The files that it was read from, which no output may overwrite.
     pub sources: Vec<PathBuf>,
 }
@@ -79,13 +83,13 @@ pub struct Log {
 impl Log {
     /// A log from arrays, which are copied and checked.
     ///
-    /// `stamp_nanos` must ascend. Without `speed_m_per_s` the speed is derived from the length, as for a log file without speed. A row without
+    /// `stamp_nanos` must ascend; it may be of dates (datetime64). Without `speed_m_per_s` the speed is derived from the length, as for a log file without speed. A row without
     /// reference, pose or wrench is NaN; a pose or wrench must be complete or absent.
     #[staticmethod]
     #[pyo3(signature = (*, cable_names, stamp_nanos, sensor_force_n, length_m, speed_m_per_s=None, reference_force_n=None, position_m=None, orientation_xyzw=None, outside_force_n=None, outside_torque_nm=None))]
     fn from_arrays(
         py: Python<'_>,
-        cable_names: Vec<String>,
+        #[pyo3(from_py_with = argument)] cable_names: Vec<String>,
         stamp_nanos: &Bound<'_, PyAny>,
         sensor_force_n: &Bound<'_, PyAny>,
         length_m: &Bound<'_, PyAny>,
@@ -125,6 +129,7 @@ impl Log {
         check_poses(&mut columns)?;
         check_wrenches(&columns)?;
         let names: Vec<&str> = cable_names.iter().map(String::as_str).collect();
+        warn(py, &too_great(&columns, &names))?;
         Self::new(py, columns, &names, None, Vec::new())
     }
 
@@ -225,11 +230,23 @@ impl Log {
     fn part(&self, py: Python<'_>, slice: &Bound<'_, PySlice>) -> Outcome<Self> {
         let bound = |name: &str| {
             let value = slice.getattr(name)?;
-            let refused = |_| PyTypeError::new_err(format!("a log is cut by seconds, not by {}", value.get_type()));
-            if value.is_none() { Ok(None) } else { value.extract::<f64>().map(Some).map_err(refused) }
+            let refused = |_| refused(name, "a number or None, as a log is cut by seconds", &value);
+            if value.is_none() {
+                return Ok(None);
+            }
+            let time_s: f64 = value.extract().map_err(refused)?;
+            // A negative number would be a time before the first row here, and one before the end for lists.
+            if time_s < 0.0 || time_s.is_nan() {
+                let text = format!(
+                    "a log is cut by seconds from its first row, 0 or more, not by {time_s}; its last second is"
+                );
+                return Err(Fault::config(format!("{text} log[log.time_s[-1] - 1.0:]")));
+            }
+            Ok(Some(time_s))
         };
-        if !slice.getattr("step")?.is_none() {
-            return Err(PyTypeError::new_err("a log is cut without a step: log[2.0:8.5]").into());
+        let step = slice.getattr("step")?;
+        if !step.is_none() {
+            return Err(refused("step", "None, as a log is cut without a step: log[2.0:8.5]", &step));
         }
         let (start_s, end_s) = (bound("start")?, bound("stop")?);
         let times = self.time_s.bind(py).readonly();
@@ -241,7 +258,13 @@ impl Log {
         let columns = self.with_rows(py, |rows| Ok(rows.copied(start..start + within.count())))?;
         let names: Vec<&str> = self.cable_names.iter().map(String::as_str).collect();
         let robot = self.robot.as_ref().map(|robot| robot.borrow(py).clone());
-        Self::new(py, columns, &names, robot, self.sources.clone())
+        let part = Self::new(py, columns, &names, robot, self.sources.clone())?;
+        Ok(Self { origin: Arc::clone(&self.origin), ..part })
+    }
+
+    /// Whether both are one log or parts of one.
+    pub fn shares_origin(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.origin, &other.origin)
     }
 
     /// Returns the first and the last stamp, ns; `None` without rows.
@@ -271,6 +294,7 @@ impl Log {
             outside_torque_nm: fixed_rows(py, columns.outside_torque_nm, 3)?,
             robot: robot.map(|robot| Py::new(py, robot)).transpose()?,
             cable_names: cable_names.iter().map(|name| (*name).to_owned()).collect(),
+            origin: Arc::new(()),
             sources,
         })
     }
@@ -308,10 +332,14 @@ impl Log {
         })
     }
 
-    /// Checks that the columns are a robot's cables.
-    pub fn check_cables(&self, names: &[&str]) -> Outcome {
+    /// Checks that the columns are a robot's cables, and that there are rows.
+    pub fn check_usable(&self, py: Python<'_>, names: &[&str]) -> Outcome {
         if self.cable_names == names {
-            return Ok(());
+            let advice = "check its file, or the times by which it was cut";
+            return match self.__len__(py)? {
+                0 => Err(Fault::log(format!("the log has no rows: {advice}"))),
+                _ => Ok(()),
+            };
         }
         let (found, expected) = (self.cable_names.join(", "), names.join(", "));
         Err(Fault::shape(format!("the log has the cables {found}, the robot {expected}; they must be the same")))
@@ -336,16 +364,17 @@ impl Log {
 pub fn read_log(
     py: Python<'_>,
     paths: &Bound<'_, PyAny>,
-    robot: Option<&Bound<'_, Robot>>,
+    #[pyo3(from_py_with = argument)] robot: Option<Bound<'_, Robot>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> Outcome<Log> {
-    read(py, paths, robot, None, &mut Watch::new(py, progress)?)
+    read(py, "paths", paths, robot.as_ref(), None, &mut Watch::new(py, progress)?)
 }
 
-/// Does the same as [`read_log`], as a part of a longer call: for a fit, without the signal that it does not use, and without warnings that the fit
+/// Does the same as [`read_log`] for the paths of an argument, as a part of a longer call: for a fit, without the signal that it does not use, and without warnings that the fit
 /// gives itself.
 pub fn read(
     py: Python<'_>,
+    argument: &str,
     paths: &Bound<'_, PyAny>,
     robot: Option<&Bound<'_, Robot>>,
     unread: Option<Role>,
@@ -353,12 +382,7 @@ pub fn read(
 ) -> Outcome<Log> {
     let sources: Vec<PathBuf> = match paths.extract() {
         Ok(path) => vec![path],
-        Err(_) => paths.extract().map_err(|_| {
-            let class = paths.get_type();
-            PyTypeError::new_err(format!(
-                "a log (`paths`, or `log`) is given as a path or several paths, not as {class}"
-            ))
-        })?,
+        Err(_) => paths.extract().map_err(|_| refused(argument, "a path or a list of paths", paths))?,
     };
     let source = py.detach(|| LogSource::open(&sources))?;
     let robot = match robot {
@@ -400,7 +424,34 @@ pub fn read(
         Some(_) => warn(py, reader.cycle_warning(&file).as_slice())?,
         None => warn(py, &reader.robot_warnings(&file))?,
     }
+    warn(py, &too_great(&columns, &names))?;
     Log::new(py, columns, &names, Some(robot), sources)
+}
+
+/// The magnitude from which the sum of the squares of a log's numbers may overflow.
+const TOO_GREAT: f64 = 1e145;
+
+/// Returns a warning for each signal of a cable with numbers that no sums of squares can hold.
+fn too_great(columns: &SampleColumns, names: &[&str]) -> Vec<String> {
+    let signals = [
+        ("sensor_force_n", &columns.sensor_force_n),
+        ("length_m", &columns.length_m),
+        ("speed_m_per_s", &columns.speed_m_per_s),
+        ("reference_force_n", &columns.reference_force_n),
+    ];
+    let of_cable = |signal: &str, numbers: &[f64], cable: usize, name: &str| {
+        let of_cable = numbers.iter().skip(cable).step_by(names.len());
+        let is_too_great = |number: &f64| number.is_finite() && number.abs() > TOO_GREAT;
+        let (row, number) = of_cable.enumerate().find(|(_, number)| is_too_great(number))?;
+        Some(format!(
+            "`{signal}` of {name} is {number:e} in row {row}, which no cable has: errors that contain it are infinite; make it NaN, a gap"
+        ))
+    };
+    let of_signal = |(signal, numbers): (&'static str, &Vec<f64>)| {
+        let warnings = names.iter().enumerate().map(|(cable, name)| of_cable(signal, numbers, cable, name));
+        warnings.collect::<Vec<_>>()
+    };
+    signals.into_iter().flat_map(of_signal).flatten().collect()
 }
 
 /// Issues warnings.
@@ -422,8 +473,8 @@ fn check_names(names: &[String]) -> Outcome {
 }
 
 fn ascending(stamp_nanos: &Bound<'_, PyAny>) -> Outcome<Vec<i64>> {
-    let wanted = Wanted { name: "stamp_nanos", shape: &[Axis::Rows], entries: "nanoseconds since 1970" };
-    let stamps = integers(&wanted, stamp_nanos)?;
+    let wanted = Wanted { name: "stamp_nanos", shape: &[Axis::Rows], entries: "nanoseconds since 1970, or datetime64" };
+    let stamps = stamps_nanos(&wanted, stamp_nanos)?;
     match stamps.iter().zip(stamps.iter().skip(1)).position(|(one, next)| next <= one) {
         None => Ok(stamps),
         Some(row) => Err(Fault::shape(format!("`stamp_nanos` does not ascend from row {row} to row {}", row + 1))),

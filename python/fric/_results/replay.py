@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypedDict
 
@@ -10,6 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .base import Result, Shown, Value, of_cable
+
+
+def _overflown(entry: Mapping[str, float | None]) -> dict[str, float]:
+    """Returns errors in which null, which is JSON for a sum of squares that overflows, is infinity."""
+    return {name: math.inf if value is None else value for name, value in entry.items()}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -23,7 +30,7 @@ class ForceError(Value):
 
     @staticmethod
     def _of(entry: dict[str, float] | None) -> ForceError | None:
-        return ForceError(**entry) if entry else None
+        return ForceError(**_overflown(entry)) if entry else None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,7 +44,7 @@ class WrenchError(Value):
 
     @staticmethod
     def _pair(entry: dict[str, Any] | None) -> tuple[WrenchError, WrenchError] | None:
-        return (WrenchError(**entry["before"]), WrenchError(**entry["after"])) if entry else None
+        return (WrenchError(**_overflown(entry["before"])), WrenchError(**_overflown(entry["after"]))) if entry else None
 
 
 class Fault(TypedDict):

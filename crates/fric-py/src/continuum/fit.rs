@@ -39,7 +39,24 @@ pub fn continuum_fit(
 ) -> Outcome<Py<PyAny>> {
     let all: Vec<Bound<'_, TendonRun>> = match runs.cast::<TendonRun>() {
         Ok(one) => vec![one.clone()],
-        Err(_) => runs.extract()?,
+        Err(_) => runs.extract().map_err(|_| refused("runs", "a TendonRun or a list of them", runs))?,
+    };
+    if all.is_empty() {
+        return Err(Fault::config("`runs` is an empty list; give at least one run"));
+    }
+    for (place, run) in all.iter().enumerate() {
+        for (before, other) in all.iter().take(place).enumerate() {
+            if other.as_any().eq(run)? {
+                let (before, place) = (before + 1, place + 1);
+                let text =
+                    format!("runs {before} and {place} of `runs` are the same, and its samples would count twice");
+                return Err(Fault::config(text + "; give each run once"));
+            }
+        }
+    }
+    let named = |names: Vec<String>| {
+        Quantity::all_named(names.iter().map(String::as_str))
+            .map_err(|problem| Fault::config(format!("`parameters`: {problem}")))
     };
     let options = TendonFitOptions { quantities: parameters.map(named).transpose()? };
     let measured: Vec<Run> = all.iter().map(|run| run.get().run.clone()).collect();

@@ -33,10 +33,10 @@ pub fn hysteresis(
     watch.part(0, 3);
     let log = match log.cast::<Log>() {
         Ok(log) => log.clone(),
-        Err(_) => Bound::new(py, log::read(py, log, Some(robot), None, &mut watch)?)?,
+        Err(_) => Bound::new(py, log::read(py, "log", log, Some(robot), None, &mut watch)?)?,
     };
     let (log, file) = (log.get(), robot.borrow().file.clone());
-    log.check_cables(&file.cable_names())?;
+    log.check_usable(py, &file.cable_names())?;
     let mut survey = Survey::new(&file)?;
     let mut cables = Vec::new();
     watch.part(1, 3);

@@ -56,13 +56,13 @@ pub fn replay(
         log.clone()
     } else {
         watch.part(0, 2);
-        let log = log::read(py, log, Some(robot), None, &mut watch)?;
+        let log = log::read(py, "log", log, Some(robot), None, &mut watch)?;
         watch.part(1, 2);
         Bound::new(py, log)?
     };
     let (log, file) = (log.get(), robot.borrow().file.clone());
     let names = file.cable_names();
-    log.check_cables(&names)?;
+    log.check_usable(py, &names)?;
     let text = robot.borrow().to_toml()?;
     let create = |path: PathBuf| ReplayedLog::create(&path, &log.sources, force, &text, &names);
     let mut writer = output.map(create).transpose()?;

@@ -4,10 +4,10 @@ use fric_lab::fit::readiness::Holdings;
 use fric_lab::fit::{LogZero, Parameter, Reference, SampleStore, zero_per_log};
 use fric_log::signals::Role;
 use fric_work::provenance::shown_path;
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 
+use crate::arguments::refused;
 use crate::errors::{Fault, Outcome};
 use crate::log::{self, Log};
 use crate::robot::Robot;
@@ -20,16 +20,15 @@ impl<'py> Runs<'py> {
     /// Accepts a Log, a path, or several of them.
     pub fn new(given: &Bound<'py, PyAny>) -> Outcome<Self> {
         let is_one = |item: &Bound<'py, PyAny>| item.is_instance_of::<Log>() || item.extract::<PathBuf>().is_ok();
-        let refuse =
-            |class| PyTypeError::new_err(format!("`log` is given as a Log, a path, or a list of them, not as {class}"));
+        let refuse = |given: &Bound<'_, PyAny>| refused("log", "a Log, a path, or a list of them", given);
         let runs: Vec<Bound<'py, PyAny>> = if is_one(given) {
             vec![given.clone()]
         } else {
-            let items = given.try_iter().map_err(|_| refuse(given.get_type()))?;
+            let items = given.try_iter().map_err(|_| refuse(given))?;
             items.collect::<PyResult<_>>()?
         };
         if let Some(other) = runs.iter().find(|item| !is_one(item)) {
-            return Err(refuse(other.get_type()).into());
+            return Err(refuse(other));
         }
         if runs.is_empty() {
             return Err(Fault::config("`log` is an empty list; give at least one log"));
@@ -45,16 +44,23 @@ impl<'py> Runs<'py> {
             sources(item).iter().filter_map(|path| Path::canonicalize(path).ok()).collect()
         };
         for (count, item) in self.0.iter().enumerate() {
-            let own = files(item);
-            let times = times(item)?;
-            let mut is_same = false;
-            for other in self.0.iter().take(count) {
-                let shares_file = files(other).iter().any(|file| own.contains(file));
-                is_same |= other.is(item) || shares_file && overlap(times, self::times(other)?);
-            }
-            if is_same {
-                let name = own.first().map_or_else(|| "a log".to_owned(), |path| path.display().to_string());
-                return Err(Fault::config(format!("{name} is given twice, and its samples would count twice")));
+            let (own, span) = (files(item), span(item)?);
+            for (place, other) in self.0.iter().take(count).enumerate() {
+                if !overlap(span, self::span(other)?) {
+                    continue;
+                }
+                if other.eq(item)? || !is_read(item) && files(other).iter().any(|file| own.contains(file)) {
+                    let name = own.first().map_or_else(|| "a log".to_owned(), |path| path.display().to_string());
+                    return Err(Fault::config(format!("{name} is given twice, and its samples would count twice")));
+                }
+                if is_part_of_one(item, other) || files(other).iter().any(|file| own.contains(file)) {
+                    return Err(Fault::config(format!(
+                        "logs {} and {} of `log` are parts of one log that overlap, and common samples would count twice; give parts \
+                         such as log[0.0:5.0] and log[5.0:]",
+                        place + 1,
+                        count + 1
+                    )));
+                }
             }
         }
         Ok(())
@@ -94,7 +100,7 @@ impl<'py> Runs<'py> {
             watch.part(place as u64, self.0.len() as u64 + 1);
             let log = match item.cast::<Log>() {
                 Ok(log) => log.clone(),
-                Err(_) => Bound::new(py, log::read(py, item, Some(robot), Some(unread), watch)?)?,
+                Err(_) => Bound::new(py, log::read(py, "log", item, Some(robot), Some(unread), watch)?)?,
             };
             let holdings = add(py, log.get(), robot, samples, watch)?;
             if self.0.len() > 1 && !holdings.has_reference() && holdings.wrenched == 0 {
@@ -121,14 +127,25 @@ fn sources(item: &Bound<'_, PyAny>) -> Vec<PathBuf> {
     }
 }
 
-/// Returns the first and the last stamp of a log that has been read, ns.
-fn times(item: &Bound<'_, PyAny>) -> Outcome<Option<(i64, i64)>> {
-    item.cast::<Log>().map_or(Ok(None), |log| log.get().stamps_nanos(item.py()))
+/// Whether this is a log that has been read, not a path.
+fn is_read(item: &Bound<'_, PyAny>) -> bool {
+    item.is_instance_of::<Log>()
 }
 
-/// Whether two parts of a log may overlap in time; a log that has not been read counts as a whole.
+/// Whether two logs that have been read are the same one or parts of the same one.
+fn is_part_of_one(item: &Bound<'_, PyAny>, other: &Bound<'_, PyAny>) -> bool {
+    let logs = item.cast::<Log>().ok().zip(other.cast::<Log>().ok());
+    logs.is_some_and(|(log, other)| log.get().shares_origin(other.get()))
+}
+
+/// Returns the first and the last stamp of a log, ns: of a path, all times; `None` without rows.
+fn span(item: &Bound<'_, PyAny>) -> Outcome<Option<(i64, i64)>> {
+    item.cast::<Log>().map_or(Ok(Some((i64::MIN, i64::MAX))), |log| log.get().stamps_nanos(item.py()))
+}
+
+/// Whether two logs overlap in time.
 fn overlap(one: Option<(i64, i64)>, other: Option<(i64, i64)>) -> bool {
-    one.zip(other).is_none_or(|((from, to), (other_from, other_to))| from <= other_to && other_from <= to)
+    one.zip(other).is_some_and(|((from, to), (other_from, other_to))| from <= other_to && other_from <= to)
 }
 
 /// Adds a log.
@@ -139,7 +156,7 @@ fn add(
     samples: &mut SampleStore<'_>,
     watch: &mut Watch<'_>,
 ) -> Outcome<Holdings> {
-    log.check_cables(&robot.borrow().file.cable_names())?;
+    log.check_usable(py, &robot.borrow().file.cable_names())?;
     let cable_count = samples.robot().cables().len();
     let (mut holdings, mut cables) = (Holdings::new(cable_count), Vec::new());
     let unknown = vec![f64::NAN; cable_count];
