@@ -1,5 +1,6 @@
 """The control loop's cycle from Python."""
 
+import copy
 import threading
 import time
 
@@ -172,6 +173,32 @@ def test_other_threads_run_meanwhile(robot, log):
     counter.join()
     # The count goes on between calls of the bar, while the cycles run.
     assert len(inside) > 10 and inside[-1] > inside[0] + 100
+
+
+def test_one_call_at_a_time_uses_a_compensator(robot, log):
+    compensator = fric.Compensator(robot)
+    arrays = [log.sensor_force_n, log.length_m, log.speed_m_per_s]
+    told = "another call uses this Compensator at the same time; give each thread a copy of its own"
+    calls = [
+        lambda: compensator.step(*(array[0] for array in arrays)),
+        lambda: compensator.run(*arrays),
+        compensator.reset,
+        compensator.snapshot,
+        lambda: compensator.pulley_friction_n("cable1"),
+        lambda: copy.copy(compensator),
+    ]
+    errors = []
+
+    def disturb(_):
+        while len(errors) < len(calls):
+            with pytest.raises(fric.InUseError, match=told):
+                calls[len(errors)]()
+            errors.append(None)
+
+    whole = compensator.run(*arrays, progress=disturb)
+    assert len(errors) == len(calls) and issubclass(fric.InUseError, (fric.FricError, RuntimeError))
+    assert fric.Compensator(robot).run(*arrays) == whole and compensator == compensator
+    assert len(compensator.run(*arrays).friction_n) == len(log)
 
 
 def test_progress_is_told_and_what_it_raises_ends_the_run(robot, log, capsys):

@@ -30,6 +30,21 @@ def same(one, other):
     return np.array_equal(np.asarray(one).view(np.int64), np.asarray(other).view(np.int64))
 
 
+def test_one_call_at_a_time_uses_a_model():
+    model = continuum.StaticModel(continuum.Manipulator.read(ARM))
+    errors = []
+
+    def disturb(_):
+        for call in (model.reset, lambda: model.solve(0.2), lambda: model.tension_for(bend_rad=0.1), lambda: model.follow(bend_rad=[0.1])):
+            with pytest.raises(fric.InUseError, match="another call uses this StaticModel at the same time"):
+                call()
+            errors.append(None)
+
+    model.run(np.linspace(0.0, 1.0, 30), progress=disturb)
+    assert errors and model == model
+    model.reset()
+
+
 def test_a_run_has_the_bits_of_the_command_line_s_shapes(arm):
     # Pulled from slack first: under tension at its beginning, a run begins with a memory that the model alone does not have.
     time_s, tension_n = np.arange(140) * 0.1, np.concatenate([np.linspace(0.0, 0.78, 20), TENSION_N])

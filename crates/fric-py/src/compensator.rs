@@ -5,8 +5,10 @@ use fric_lab::columns::OutputColumns;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
+use crate::arguments::{argument, frozen, object, text};
 use crate::arrays::{Axis, Wanted, array, numbers};
 use crate::errors::{Fault, Outcome};
+use crate::exclusive::Exclusive;
 use crate::results;
 use crate::robot::{Robot, cables_in_words};
 use crate::travel::{self, Reduced, counted_words};
@@ -25,9 +27,9 @@ use crate::watch::Watch;
 /// >>> run = compensator.run(np.full((500, 8), 15.2), np.full((500, 8), 0.83), np.zeros((500, 8)))
 /// >>> run.friction_n.shape
 /// (500, 8)
-#[pyclass(module = "fric")]
+#[pyclass(module = "fric", frozen)]
 pub struct Compensator {
-    cycles: AnyCompensator,
+    cycles: Exclusive<AnyCompensator>,
     /// The robot at set-up.
     robot: Robot,
     /// Names of the cables and their numbers of pulleys.
@@ -40,6 +42,22 @@ pub struct Compensator {
 pub struct Snapshot {
     /// The full state, bit for bit.
     words: Vec<u64>,
+}
+
+impl Compensator {
+    fn of(robot: Robot) -> Outcome<Self> {
+        let params = robot.file.params();
+        let pulley_counts = params.cables().iter().map(fric_core::CableParams::pulley_count);
+        let names = robot.file.cable_names().into_iter().map(ToOwned::to_owned);
+        let cables = names.zip(pulley_counts).collect();
+        let cycles = Exclusive::new(AnyCompensator::new(&params)?, "Compensator");
+        Ok(Self { cycles, robot, cables })
+    }
+
+    /// Returns the full state, bit for bit.
+    fn state_words(&self) -> Outcome<Vec<u64>> {
+        Ok(self.cycles.borrow()?.state_words())
+    }
 }
 
 /// Returns a `Compensation`: arrays with one row per cycle, or a single row if `row_count` is `None`.
@@ -65,31 +83,27 @@ pub fn compensation(
 #[pymethods]
 impl Compensator {
     #[new]
-    fn new(robot: &Robot) -> Outcome<Self> {
-        let params = robot.file.params();
-        let pulley_counts = params.cables().iter().map(fric_core::CableParams::pulley_count);
-        let names = robot.file.cable_names().into_iter().map(ToOwned::to_owned);
-        let cables = names.zip(pulley_counts).collect();
-        Ok(Self { cycles: AnyCompensator::new(&params)?, robot: robot.clone(), cables })
+    fn new(#[pyo3(from_py_with = object)] robot: &Bound<'_, Robot>) -> Outcome<Self> {
+        Self::of(robot.borrow().clone())
     }
 
     /// Runs one cycle with one number per cable in each array. `elapsed_cycles` is more than 1 after skipped cycles.
     #[pyo3(signature = (sensor_force_n, length_m, speed_m_per_s, *, position_m=None, orientation_xyzw=None, elapsed_cycles=1.0))]
     fn step(
-        &mut self,
+        &self,
         py: Python<'_>,
         sensor_force_n: &Bound<'_, PyAny>,
         length_m: &Bound<'_, PyAny>,
         speed_m_per_s: &Bound<'_, PyAny>,
         position_m: Option<&Bound<'_, PyAny>>,
         orientation_xyzw: Option<&Bound<'_, PyAny>>,
-        elapsed_cycles: f64,
+        #[pyo3(from_py_with = argument)] elapsed_cycles: f64,
     ) -> Outcome<Py<PyAny>> {
         let signals = Signals::read(&[], self.cables.len(), [sensor_force_n, length_m, speed_m_per_s])?;
         let poses = Poses::read(&[], position_m, orientation_xyzw)?;
         let elapsed_cycles = checked_elapsed(vec![elapsed_cycles])?;
         let mut columns = OutputColumns::default();
-        cycle(&mut self.cycles, &mut columns, &signals, &poses, &elapsed_cycles, 0, &mut Vec::new());
+        cycle(&mut *self.cycles.borrow()?, &mut columns, &signals, &poses, &elapsed_cycles, 0, &mut Vec::new());
         compensation(py, columns, None, self.cables.len())
     }
 
@@ -102,7 +116,7 @@ impl Compensator {
         text_signature = "(self, sensor_force_n, length_m, speed_m_per_s, *, position_m=None, orientation_xyzw=None, elapsed_cycles=1.0, progress=False)"
     )]
     fn run(
-        &mut self,
+        &self,
         py: Python<'_>,
         sensor_force_n: &Bound<'_, PyAny>,
         length_m: &Bound<'_, PyAny>,
@@ -126,9 +140,10 @@ impl Compensator {
                 checked_elapsed(numbers(&wanted, value)?)?
             }
         };
-        let before = self.cycles.snapshot();
+        let mut cycles = self.cycles.borrow()?;
+        let before = cycles.snapshot();
         let (mut columns, mut cables) = (OutputColumns::default(), Vec::new());
-        let compensator = &mut self.cycles;
+        let compensator = &mut *cycles;
         let result = Watch::new(py, progress)?.work(row_count, |rows| {
             for row in rows {
                 cycle(compensator, &mut columns, &signals, &poses, &elapsed_cycles, row, &mut cables);
@@ -136,42 +151,47 @@ impl Compensator {
             Ok(())
         });
         if result.is_err() {
-            self.cycles.restore(&before)?;
+            compensator.restore(&before)?;
         }
         result?;
         compensation(py, columns, Some(row_count), cable_count)
     }
 
     /// Resets to the state after set-up: at rest, nothing stored, no pose.
-    fn reset(&mut self) {
-        self.cycles.reset();
+    fn reset(&self) -> Outcome {
+        self.cycles.borrow()?.reset();
+        Ok(())
     }
 
     /// Returns the present state.
-    fn snapshot(&self) -> Snapshot {
-        Snapshot { words: self.cycles.state_words() }
+    fn snapshot(&self) -> Outcome<Snapshot> {
+        Ok(Snapshot { words: self.state_words()? })
     }
 
     /// Restores a snapshot; the following cycles have the same bits as after the snapshot.
-    fn restore(&mut self, snapshot: &Snapshot) -> Outcome {
-        Ok(self.cycles.restore_words(&snapshot.words)?)
+    fn restore(&self, #[pyo3(from_py_with = frozen)] snapshot: &Snapshot) -> Outcome {
+        Ok(self.cycles.borrow()?.restore_words(&snapshot.words)?)
     }
 
     /// Friction stored at each pulley of a cable, from the winch, N; zeros with `lumped` presliding.
-    fn pulley_friction_n(&self, py: Python<'_>, cable: &str) -> Outcome<Py<PyArray1<f64>>> {
+    fn pulley_friction_n(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = text)] cable: &str,
+    ) -> Outcome<Py<PyArray1<f64>>> {
         let names = || self.cables.iter().map(|(name, _)| name.as_str());
         let Some(index) = names().position(|name| name == cable) else {
             return Err(Fault::config(fric_core::robot::unknown_name("cable", cable, names())));
         };
         let count = self.cables.get(index).map_or(0, |(_, pulley_count)| *pulley_count);
-        let friction_n = self.cycles.pulley_friction_n(index);
+        let friction_n = self.cycles.borrow()?.pulley_friction_n(index);
         Ok(PyArray1::from_iter(py, friction_n.into_iter().take(count)).unbind())
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> Outcome<bool> {
         let Ok(other) = other.cast::<Self>() else { return Ok(false) };
-        let other = other.try_borrow().map_err(PyErr::from)?;
-        Ok(self.robot.file == other.robot.file && self.cycles.state_words() == other.cycles.state_words())
+        let other = other.get();
+        Ok(self.robot.file == other.robot.file && self.state_words()? == other.state_words()?)
     }
 
     fn __repr__(&self) -> String {
@@ -181,8 +201,8 @@ impl Compensator {
 
     /// Pickles, and copies, the robot and the state; the copy continues with the same bits.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<Reduced<'py, (String, Robot, Vec<u64>)>> {
-        let one = slf.borrow();
-        let state = (travel::VERSION.to_owned(), one.robot.clone(), one.cycles.state_words());
+        let one = slf.get();
+        let state = (travel::VERSION.to_owned(), one.robot.clone(), one.state_words()?);
         Ok((slf.getattr("_unpickled")?, state))
     }
 
@@ -190,8 +210,8 @@ impl Compensator {
     #[staticmethod]
     fn _unpickled(version: &str, robot: &Robot, words: Vec<u64>) -> Outcome<Self> {
         travel::check_version(version)?;
-        let mut one = Self::new(robot)?;
-        one.cycles.restore_words(&words)?;
+        let one = Self::of(robot.clone())?;
+        one.cycles.borrow()?.restore_words(&words)?;
         Ok(one)
     }
 }

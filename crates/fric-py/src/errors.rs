@@ -27,6 +27,7 @@ pyo3::import_exception!(fric._errors, ArrayTypeError);
 pyo3::import_exception!(fric._errors, ConfigError);
 pyo3::import_exception!(fric._errors, ConfigFileNotFoundError);
 pyo3::import_exception!(fric._errors, FitError);
+pyo3::import_exception!(fric._errors, InUseError);
 pyo3::import_exception!(fric._errors, LogError);
 pyo3::import_exception!(fric._errors, LogFileNotFoundError);
 pyo3::import_exception!(fric._errors, OutputError);
@@ -65,6 +66,11 @@ impl Fault {
     /// Creates the error of data that allow no fit.
     pub fn fit(text: impl Into<String>) -> Self {
         Self(FitError::new_err(text.into()))
+    }
+
+    /// Creates the error of an object that another call uses.
+    pub fn in_use(text: impl Into<String>) -> Self {
+        Self(InUseError::new_err(text.into()))
     }
 
     /// Creates the error of an unusable log.

@@ -13,6 +13,7 @@ mod catalogue;
 mod compensator;
 mod continuum;
 mod errors;
+mod exclusive;
 mod log;
 mod results;
 mod robot;

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use super::Manipulator;
 use super::static_rows::{CommandRows, ShapeRows};
+use crate::arguments::{argument, frozen, object, text};
 use crate::arrays::{Axis, Wanted, numbers};
 use crate::errors::{Fault, Outcome};
 use crate::exclusive::Exclusive;
@@ -37,9 +38,9 @@ use crate::watch::Watch;
 /// (0.59, <GoalStatus.REVERSAL|DEAD_BAND: 48>)
 /// >>> model.run([0.4, 0.8, 0.7]).disk_position_m.shape
 /// (3, 8, 2)
-#[pyclass(module = "fric.continuum")]
+#[pyclass(module = "fric.continuum", frozen)]
 pub struct StaticModel {
-    model: AnyStaticModel,
+    model: Exclusive<AnyStaticModel>,
     drive: Drive,
     options: DriveOptions,
     manipulator: Py<Manipulator>,
@@ -81,9 +82,9 @@ fn unknown_friction(name: &str, known: &[&str]) -> Fault {
     Fault::config(unknown_name("friction", name, known.iter().copied()))
 }
 
-/// Returns the number of axes of an argument.
+/// Returns the number of axes of an argument; 0 for one that is no array, which `numbers` refuses.
 fn axis_count(value: &Bound<'_, PyAny>) -> Outcome<usize> {
-    let array = value.py().import("numpy")?.call_method1("asarray", (value,))?;
+    let Ok(array) = value.py().import("numpy")?.call_method1("asarray", (value,)) else { return Ok(0) };
     Ok(array.cast::<PyUntypedArray>()?.ndim())
 }
 
@@ -166,31 +167,39 @@ fn goal_friction(name: &str) -> Outcome<Friction<'static>> {
 
 impl StaticModel {
     fn disk_count(&self) -> usize {
-        self.model.params().disk_count()
+        self.manipulator.get().file.params().disk_count()
+    }
+
+    fn of(manipulator: Py<Manipulator>, options: DriveOptions) -> Outcome<Self> {
+        let params = manipulator.get().file.params();
+        let model = Exclusive::new(AnyStaticModel::new(params)?, "StaticModel");
+        let drive = Drive::new(params, &options)?;
+        Ok(Self { model, drive, options, manipulator })
     }
 
     /// Works over rows. If Ctrl-C ends the work, the model is unchanged.
     fn work(
-        &mut self,
+        &self,
         py: Python<'_>,
         progress: Option<&Bound<'_, PyAny>>,
         count: usize,
         mut row: impl FnMut(&mut AnyStaticModel, &Drive, usize) + Send,
     ) -> Outcome {
-        let before = self.model.clone();
-        let (model, drive) = (&mut self.model, &self.drive);
+        let mut state = self.model.borrow()?;
+        let before = state.clone();
+        let (model, drive) = (&mut *state, &self.drive);
         let done = Watch::new(py, progress)?.work(count, |rows| {
             rows.for_each(|place| row(model, drive, place));
             Ok(())
         });
         if done.is_err() {
-            self.model = before;
+            *state = before;
         }
         done
     }
 
-    fn state_words(&self) -> Vec<u64> {
-        self.model.state_words()
+    fn state_words(&self) -> Outcome<Vec<u64>> {
+        Ok(self.model.borrow()?.state_words())
     }
 }
 
@@ -202,10 +211,10 @@ impl StaticModel {
         text_signature = "(manipulator, *, least_tension_n=(0.0, 0.0), greatest_tension_n=None, hold_rad=0.0)"
     )]
     fn new(
-        manipulator: Py<Manipulator>,
-        least_tension_n: Option<[f64; 2]>,
-        greatest_tension_n: Option<[f64; 2]>,
-        hold_rad: f64,
+        #[pyo3(from_py_with = object)] manipulator: &Bound<'_, Manipulator>,
+        #[pyo3(from_py_with = argument)] least_tension_n: Option<[f64; 2]>,
+        #[pyo3(from_py_with = argument)] greatest_tension_n: Option<[f64; 2]>,
+        #[pyo3(from_py_with = argument)] hold_rad: f64,
     ) -> Outcome<Self> {
         let params = manipulator.get().file.params();
         let usual = DriveOptions::first_tendon(params);
@@ -214,25 +223,25 @@ impl StaticModel {
             greatest_tension_n: greatest_tension_n.unwrap_or(usual.greatest_tension_n),
             hold_rad,
         };
-        let (model, drive) = (AnyStaticModel::new(params)?, Drive::new(params, &options)?);
-        Ok(Self { model, drive, options, manipulator })
+        Self::of(manipulator.clone().unbind(), options)
     }
 
     /// Returns the shape for the tension at the base, N: a number for the first tendon, or a pair for both. With `friction="measured"`, `tension_n`
     /// contains the tension in each segment, (disks,) or (2, disks).
     #[pyo3(signature = (base_tension_n, *, friction="history", tension_n=None))]
     fn solve(
-        &mut self,
+        &self,
         py: Python<'_>,
         base_tension_n: &Bound<'_, PyAny>,
-        friction: &str,
+        #[pyo3(from_py_with = text)] friction: &str,
         tension_n: Option<&Bound<'_, PyAny>>,
     ) -> Outcome<Py<PyAny>> {
         let base_n = base_tensions(base_tension_n, &[])?;
         let way = Way::read(friction, tension_n, &[], self.disk_count())?;
         let mut rows = ShapeRows::default();
+        let mut model = self.model.borrow()?;
         for base_n in base_n {
-            rows.push(self.model.solve(base_n, way.of_row(0, self.disk_count())), &self.model);
+            rows.push(model.solve(base_n, way.of_row(0, self.disk_count())), &model);
         }
         rows.into_python(py, None, self.disk_count())
     }
@@ -246,10 +255,10 @@ impl StaticModel {
         text_signature = "(self, base_tension_n, *, friction='history', tension_n=None, progress=False)"
     )]
     fn run(
-        &mut self,
+        &self,
         py: Python<'_>,
         base_tension_n: &Bound<'_, PyAny>,
-        friction: &str,
+        #[pyo3(from_py_with = text)] friction: &str,
         tension_n: Option<&Bound<'_, PyAny>>,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> Outcome<Py<PyAny>> {
@@ -270,16 +279,17 @@ impl StaticModel {
     /// The memory of the holes is unchanged: `solve`, with the tension that was then set or measured, advances it.
     #[pyo3(signature = (*, bend_rad=None, tip_m=None, friction="history"))]
     fn tension_for(
-        &mut self,
+        &self,
         py: Python<'_>,
         bend_rad: Option<&Bound<'_, PyAny>>,
         tip_m: Option<&Bound<'_, PyAny>>,
-        friction: &str,
+        #[pyo3(from_py_with = text)] friction: &str,
     ) -> Outcome<Py<PyAny>> {
         let (goals, friction) = (goals(bend_rad, tip_m, &[])?, goal_friction(friction)?);
         let mut rows = CommandRows::default();
+        let mut model = self.model.borrow()?;
         for goal in goals {
-            rows.push(&self.model.tension_for(goal, friction, &self.drive));
+            rows.push(&model.tension_for(goal, friction, &self.drive));
         }
         rows.into_python(py, None)
     }
@@ -291,11 +301,11 @@ impl StaticModel {
         text_signature = "(self, *, bend_rad=None, tip_m=None, friction='history', progress=False)"
     )]
     fn follow(
-        &mut self,
+        &self,
         py: Python<'_>,
         bend_rad: Option<&Bound<'_, PyAny>>,
         tip_m: Option<&Bound<'_, PyAny>>,
-        friction: &str,
+        #[pyo3(from_py_with = text)] friction: &str,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> Outcome<Py<PyAny>> {
         let (goals, friction) = (goals(bend_rad, tip_m, &[Axis::Rows])?, goal_friction(friction)?);
@@ -311,18 +321,19 @@ impl StaticModel {
     }
 
     /// Resets to the state after set-up: straight, without tension, with relaxed holes.
-    fn reset(&mut self) {
-        self.model.reset();
+    fn reset(&self) -> Outcome {
+        self.model.borrow()?.reset();
+        Ok(())
     }
 
     /// Returns the present state.
-    fn snapshot(&self) -> StaticSnapshot {
-        StaticSnapshot { words: self.state_words() }
+    fn snapshot(&self) -> Outcome<StaticSnapshot> {
+        Ok(StaticSnapshot { words: self.state_words()? })
     }
 
     /// Restores a snapshot of the same manipulator; the following steps have the same bits as after the snapshot.
-    fn restore(&mut self, snapshot: &StaticSnapshot) -> Outcome {
-        Ok(self.model.restore_words(&snapshot.words)?)
+    fn restore(&self, #[pyo3(from_py_with = frozen)] snapshot: &StaticSnapshot) -> Outcome {
+        Ok(self.model.borrow()?.restore_words(&snapshot.words)?)
     }
 
     /// The manipulator.
@@ -333,9 +344,9 @@ impl StaticModel {
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> Outcome<bool> {
         let Ok(other) = other.cast::<Self>() else { return Ok(false) };
-        let other = other.try_borrow().map_err(PyErr::from)?;
+        let other = other.get();
         let is_same_arm = self.manipulator.get().text == other.manipulator.get().text;
-        Ok(is_same_arm && self.options == other.options && self.state_words() == other.state_words())
+        Ok(is_same_arm && self.options == other.options && self.state_words()? == other.state_words()?)
     }
 
     fn __repr__(&self) -> String {
@@ -348,11 +359,17 @@ impl StaticModel {
     fn __reduce__<'py>(
         slf: &Bound<'py, Self>,
     ) -> Outcome<Reduced<'py, (String, Py<Manipulator>, [f64; 2], [f64; 2], f64, Vec<u64>)>> {
-        let one = slf.borrow();
+        let one = slf.get();
         let DriveOptions { least_tension_n, greatest_tension_n, hold_rad } = one.options;
         let manipulator = one.manipulator.clone_ref(slf.py());
-        let state =
-            (travel::VERSION.to_owned(), manipulator, least_tension_n, greatest_tension_n, hold_rad, one.state_words());
+        let state = (
+            travel::VERSION.to_owned(),
+            manipulator,
+            least_tension_n,
+            greatest_tension_n,
+            hold_rad,
+            one.state_words()?,
+        );
         Ok((slf.getattr("_unpickled")?, state))
     }
 
@@ -367,8 +384,8 @@ impl StaticModel {
         words: Vec<u64>,
     ) -> Outcome<Self> {
         travel::check_version(version)?;
-        let mut one = Self::new(manipulator, Some(least_tension_n), Some(greatest_tension_n), hold_rad)?;
-        one.model.restore_words(&words)?;
+        let one = Self::of(manipulator, DriveOptions { least_tension_n, greatest_tension_n, hold_rad })?;
+        one.model.borrow()?.restore_words(&words)?;
         Ok(one)
     }
 }
