@@ -326,6 +326,62 @@ def test_limits_and_a_last_log_out_of_line():
         limited.of("rog", "cable1", "mu")
 
 
+def test_a_step_beyond_a_limit_is_one_alarm():
+    series = table(made(1, "step"))
+    (plain,) = fleet.trend(series).alarms
+    (alarm,) = fleet.trend(series, limits={"mu": (None, plain.changes[0].before)}).alarms
+    assert (alarm.reason, alarm.date, alarm.changes) == ("limit", plain.date, plain.changes)
+    assert alarm.text.startswith(plain.text) and "above the limit of" in alarm.text
+    for limits in ({"mu": 0.05}, {"mu": (0.0,)}, {"mu": (0.0, float("nan"))}, {"mu": "ab"}):
+        with pytest.raises(fric.ConfigError, match="the limit of `mu` in `limits` is .*; give least and greatest value as a pair"):
+            fleet.trend(series, limits=limits)
+    with pytest.raises(fric.ArgumentTypeError, match="`limits` must be a dict of pairs"):
+        fleet.trend(series, limits=[0.05])
+
+
+def test_only_logs_without_a_result_are_failures():
+    day = DAY.replace(tzinfo=None)
+    good = {"robot": "rig", "cable": "c", "parameter": "mu", "start": day, "value": 0.02, "standard_error": 1e-4, "state": "fitted"}
+
+    def row(log, log_hash, hour, **rest):
+        return {**good, "log": log, "log_hash": log_hash, "computed": day + datetime.timedelta(hours=hour), **rest}
+
+    failed = {"cable": None, "parameter": None, "value": None, "standard_error": None, "start": None}
+    rows = [
+        # Failed without a model, then computed with one.
+        row("a.mcap", "a", 1, **failed, robot="unknown", error="no robot file"),
+        row("a.mcap", "a", 2),
+        # Computed with its own model, then tried with that of another robot.
+        row("b.mcap", "b", 1),
+        row("b.mcap", "b", 2, **failed, robot="other", error="other cables"),
+        # Broken, then recorded anew under the same name.
+        row("c.mcap", "c", 1, **failed, error="damaged"),
+        row("c.mcap", "c2", 2),
+        # Failed twice.
+        row("d.mcap", "d", 1, **failed, robot="unknown", error="no robot file"),
+        row("d.mcap", "d", 2, **failed, error="damaged"),
+        # Broken since.
+        row("e.mcap", "e", 1),
+        row("e.mcap", "e2", 2, **failed, error="damaged"),
+    ]
+    names = {name: None for one in rows for name in one}
+    found = fleet.trend(pyarrow.Table.from_pylist([{**names, **one} for one in rows]))
+    assert found.failures == (fleet.LogFailure("d.mcap", "damaged"), fleet.LogFailure("e.mcap", "damaged"))
+    assert "2 logs gave no result\n  d.mcap and 1 more log: damaged\n" in str(found)
+    assert "<td" in found.to_html() and "d.mcap and 1 more log" in found.to_html()
+
+
+def test_an_error_of_all_logs_is_told_once_and_one_log_is_no_logs():
+    failures = tuple(fleet.LogFailure(f"{name}.mcap", "unknown reference `x`") for name in "abc") + (fleet.LogFailure("d.mcap", "damaged"),)
+    told = str(fleet.FleetRun("fit", "out", 4, 0, 0, failures))
+    assert told == (
+        "fit of 4 logs into out: 0 computed, 0 there before, 4 failed\n  a.mcap and 2 more logs: unknown reference `x`\n  d.mcap: damaged\n"
+    )
+    assert str(fleet.FleetRun("fit", "out", 1, 1, 0, ())).startswith("fit of 1 log into out")
+    day = np.array([0.0])
+    assert str(fleet.trend(table((day, day, day, 0)))).startswith("1 log of 1 robot, 1 series by fric fit")
+
+
 def test_a_trend_is_shown_in_all_forms(whole):
     found = fleet.trend(pyarrow.concat_tables([table(made(1, "step")), table(made(5, "none"), robot="<other>")]))
     told = found.to_dict()
@@ -347,7 +403,7 @@ def test_logs_without_a_date_are_left_out(place, cluster, tmp_path):
     done = fleet.run("fit", tmp_path / "undated.csv", results=tmp_path / "results", model=place / "robot.toml", client=cluster)
     found = fleet.trend(done)
     assert (found.logs, found.undated, found.series) == (0, (str(tmp_path / "undated.csv"),), ())
-    assert "1 logs have no date" in str(found)
+    assert "1 log has no date" in str(found)
 
 
 def test_own_workers_are_started_and_ended(place, tmp_path):

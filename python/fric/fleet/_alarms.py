@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime, timedelta, timezone
 from itertools import groupby
 
@@ -19,10 +20,21 @@ def alarms_of(series: tuple[Series, ...], out_of_line: list[bool]) -> tuple[Alar
     for one, is_out in zip(series, out_of_line):
         limit = _of_limit(one)
         if limit is not None:
-            alarms.append(limit)
+            _add_limit(alarms, limit)
         elif is_out:
             alarms.append(_of_last_log(one))
     return tuple(sorted(alarms, key=lambda alarm: alarm.date, reverse=True))
+
+
+def _add_limit(alarms: list[Alarm], limit: Alarm) -> None:
+    """Adds an exceeded limit: to the alarm of the change that exceeds it, if there is one from the same date."""
+    [parameter] = limit.parameters
+    for place, alarm in enumerate(alarms):
+        is_of_machine = (alarm.robot, alarm.cable) == (limit.robot, limit.cable)
+        if is_of_machine and any((one.parameter, one.date) == (parameter, limit.date) for one in alarm.changes):
+            alarms[place] = replace(alarm, reason="limit", text=f"{alarm.text}; {limit.text}")
+            return
+    alarms.append(limit)
 
 
 def day(date: datetime) -> str:

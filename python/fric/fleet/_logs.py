@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .._arguments import must_be
 from .._errors import ConfigError, LogFileNotFoundError
 from ._needs import need
 
@@ -18,6 +19,7 @@ from ._needs import need
 _BAG = "metadata.yaml"
 _BLOCK_BYTES = 1 << 20
 _NO_ENTRY = 2
+_PATHS = "a path or a list of paths"
 
 
 @dataclass(frozen=True)
@@ -36,12 +38,15 @@ def find(paths: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> li
     A folder named by itself is a log (a bag). Among the matches of a glob, logs are files and folders with a `metadata.yaml`. Raises
     LogFileNotFoundError for a path that matches nothing.
     """
-    asked = [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
+    path = (str, os.PathLike)
+    must_be("paths", paths, _PATHS, *path, Iterable)
+    asked = [paths] if isinstance(paths, path) else list(paths)
     if not asked:
         raise ConfigError("`paths` is empty; give at least one path, glob or address of logs")
     found: dict[str, LogAddress] = {}
-    for path in asked:
-        found.update((log.address, log) for log in _matches(os.fspath(path)))
+    for one in asked:
+        must_be("paths", one, _PATHS, *path)
+        found.update((log.address, log) for log in _matches(os.fspath(one)))
     return [found[address] for address in sorted(found)]
 
 

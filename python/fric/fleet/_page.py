@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from html import escape
 
+from .._results.base import counted
 from ._alarms import day
 from ._chart import chart
+from ._run import told_once
 from ._trend import Alarm, Series, Trend
 from ._words import between, headline, provenance, remarks, since, verdict
 
@@ -123,7 +125,7 @@ def _size(size: float, error: float, kind: str) -> str:
 
 
 def _figure(series: Series) -> str:
-    caption = f"{series.parameter}: {len(series.values)} logs, with 95 % intervals; scatter from log to log {series.scatter:.2g}"
+    caption = f"{series.parameter}: {counted(len(series.values), 'log')}, with 95 % intervals; scatter from log to log {series.scatter:.2g}"
     return f"<figure>{chart(series)}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
@@ -158,7 +160,7 @@ def _state(series: Series) -> str:
 def _failures(trend: Trend) -> str:
     if not trend.failures:
         return ""
-    rows = [[escape(one.log), escape(one.error)] for one in trend.failures]
+    rows = [[escape(logs), escape(error)] for logs, error in told_once(trend.failures)]
     return "<h2>Logs without a result</h2>" + _table("", ["log", "why"], rows, stacked=True)
 
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Literal
 
+from .._arguments import must_be
 from .._errors import ConfigError
 from .._fric import Robot, __version__
 from .._progress import Bar
-from .._results.base import Value
+from .._results.base import Value, counted
 from ._cluster import connected
 from ._errors import FleetError
 from ._logs import LogAddress, file_system, find
@@ -35,9 +36,17 @@ class LogFailure(Value):
     """Sentence that states the problem."""
 
 
+def told_once(failures: Sequence[LogFailure]) -> list[tuple[str, str]]:
+    """Returns each error once, after the log that it concerns, or the first of them and the number of the others."""
+    logs: dict[str, list[str]] = {}
+    for failure in failures:
+        logs.setdefault(failure.error, []).append(failure.log)
+    return [(first + (f" and {counted(len(more), 'more log')}" if more else ""), error) for error, (first, *more) in logs.items()]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class FleetRun(Value):
-    """Result of `run`. `print(run)` states what was done, with every log that failed."""
+    """Result of `run`. `print(run)` states what was done, with every error."""
 
     operation: str
     """"discover", "fit" or "replay"."""
@@ -53,9 +62,9 @@ class FleetRun(Value):
     """Logs without a result, from this run or from an earlier one that gave the same error."""
 
     def summary(self) -> str:
-        """Returns the counts, and one line for every log that failed."""
-        head = f"{self.operation} of {self.logs} logs into {self.results}: {self.computed} computed, {self.known} there before"
-        lines = [f"{head}, {len(self.failures)} failed"] + [f"  {one.log}: {one.error}" for one in self.failures]
+        """Returns the counts, and one line for every error with the logs that it concerns."""
+        head = f"{self.operation} of {counted(self.logs, 'log')} into {self.results}: {self.computed} computed, {self.known} there before"
+        lines = [f"{head}, {len(self.failures)} failed"] + [f"  {logs}: {error}" for logs, error in told_once(self.failures)]
         return "\n".join(lines) + "\n"
 
     def __str__(self) -> str:
@@ -94,6 +103,11 @@ def run(
     Raises ConfigError if the operation, an option, or the model is invalid, LogFileNotFoundError if a path matches nothing, FleetError if no
     scheduler or worker answers, and ImportError if a library of the extra `fleet` is missing.
     """
+    path = (str, os.PathLike)
+    must_be("operation", operation, "a text", str)
+    must_be("results", results, "a path or an address", *path)
+    must_be("model", model, "a Robot, a path or None", Robot, *path, type(None))
+    must_be("workers", workers, "a whole number or None", int, type(None))
     checked(operation, options)
     text = _text_of(model)
     key = key_of(__version__, operation, options, None if text is None else model_hash(text))

@@ -69,15 +69,33 @@ def gather(results: Any, operation: str | None) -> Gathered:
     table = _latest(table)
     compute = need("pyarrow.compute")
     is_good = compute.is_null(table.column("error"))
-    failures = table.filter(compute.invert(is_good)).select(["log", "error"]).to_pylist()
     good = table.filter(is_good)
+    failures = _failures(table.filter(compute.invert(is_good)), good)
     has_date = compute.is_valid(good.column("start"))
     undated = {str(log) for log in good.filter(compute.invert(has_date)).column("log").unique().to_pylist()}
     dated = good.filter(has_date)
-    told = tuple(LogFailure(*failure) for failure in sorted({(str(one["log"]), str(one["error"])) for one in failures}))
     logs = dated.group_by(["robot", "start", "log_hash"]).aggregate([]).num_rows
     operation = operation or "fit"
-    return Gathered(operation, _split(dated, operation), told, tuple(sorted(undated)), logs)
+    return Gathered(operation, _split(dated, operation), failures, tuple(sorted(undated)), logs)
+
+
+def _failures(failed: Any, good: Any) -> tuple[LogFailure, ...]:
+    """Returns the logs without a result, each with its last error.
+
+    A log has a result if its bytes have one, also by another model, or if its address has one that is newer than the error.
+    """
+    good_hashes = set(good.column("log_hash").unique().to_pylist()) - {None}
+    newest = good.group_by("log").aggregate([("computed", "max")])
+    good_since = {log: at for log, at in zip(*(newest.column(name).to_pylist() for name in ("log", "computed_max"))) if at is not None}
+    last: dict[str, tuple[Any, str]] = {}
+    for one in failed.select(["log", "log_hash", "error", "computed"]).to_pylist():
+        log, computed = str(one["log"]), one["computed"]
+        is_over = computed is not None and log in good_since and good_since[log] > computed
+        if one["log_hash"] in good_hashes or is_over:
+            continue
+        if log not in last or (computed is not None and last[log][0] is not None and computed > last[log][0]):
+            last[log] = (computed, str(one["error"]))
+    return tuple(LogFailure(log, error) for log, (_, error) in sorted(last.items()))
 
 
 def _split(table: Any, operation: str) -> tuple[Values, ...]:

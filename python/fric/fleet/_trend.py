@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from .._arguments import must_be
 from .._errors import ConfigError
 from .._fric import _unknown_name
 from .._results.base import Result, Shown, Value
@@ -92,13 +93,13 @@ class Alarm(Value):
     cable: str
     """Name of the cable."""
     reason: Literal["history", "limit", "last_log"]
-    """ "history": changed relative to the past; "limit": beyond a given limit; "last_log": only the last log is an outlier."""
+    """ "history": changed relative to the past; "limit": beyond a given limit, also by such a change; "last_log": only the last log is an outlier."""
     date: datetime
     """Date from which the alarm holds, UTC."""
     parameters: tuple[str, ...]
     """Parameters that show it, strongest evidence first."""
     changes: tuple[Change, ...]
-    """Changes of these parameters; empty for the other reasons."""
+    """Changes of these parameters; empty if the alarm is of none."""
     text: str
     """Sentence that states what happened."""
     cause: str
@@ -128,6 +129,7 @@ class Trend(Result):
         """Returns the series of a robot, cable, and parameter."""
         chosen = self.series
         for what, name in (("robot", robot), ("cable", cable), ("parameter", parameter)):
+            must_be(what, name, "a text", str)
             known = list(dict.fromkeys(getattr(one, what) for one in chosen))
             chosen = tuple(one for one in chosen if getattr(one, what) == name)
             if not chosen:
@@ -149,8 +151,9 @@ def trend(results: Any, *, operation: Literal["discover", "fit", "replay"] | Non
 
     Raises ConfigError if there are no results or a name is invalid, and ShapeError for a table without these columns.
     """
+    must_be("operation", operation, "a text or None", str, type(None))
     gathered = gather(results, operation)
-    bounds = _checked(limits or {}, gathered.series)
+    bounds = _checked({} if limits is None else limits, gathered.series)
     courses = [_course(one, len(gathered.series)) for one in gathered.series]
     series = tuple(_series(one, found, bounds) for one, found in zip(gathered.series, courses))
     return _assembled(gathered, series, courses)
@@ -215,14 +218,15 @@ def _assembled(gathered: Gathered, series: tuple[Series, ...], courses: list[Cou
 
 def _checked(limits: Limits, series: tuple[Values, ...]) -> dict[str, tuple[float | None, float | None]]:
     known = {one.parameter for one in series} | {f"{one.robot}/{one.cable}/{one.parameter}" for one in series}
+    must_be("limits", limits, 'a dict of pairs, such as {"mu": (None, 0.05)}', Mapping)
     for name, bounds in limits.items():
         if name not in known:
-            raise ConfigError(_unknown_name("parameter for a limit", name, sorted({one.parameter for one in series})))
-        pair = tuple(bounds)
-        if len(pair) != 2 or any(one is not None and not math.isfinite(one) for one in pair):
-            raise ConfigError(f"the limit of `{name}` is {bounds}; give least and greatest value, None for none")
+            raise ConfigError(_unknown_name("parameter for a limit", str(name), sorted({one.parameter for one in series})))
+        pair = tuple(bounds) if isinstance(bounds, (list, tuple, np.ndarray)) else ()
+        if len(pair) != 2 or not all(one is None or (isinstance(one, (int, float)) and math.isfinite(one)) for one in pair):
+            raise ConfigError(f"the limit of `{name}` in `limits` is {bounds}; give least and greatest value as a pair, None for none")
         if pair[0] is not None and pair[1] is not None and pair[0] >= pair[1]:
-            raise ConfigError(f"the limit of `{name}` is {bounds}; the least value comes first")
+            raise ConfigError(f"the limit of `{name}` in `limits` is {bounds}; the least value comes first")
     return {name: (bounds[0], bounds[1]) for name, bounds in limits.items()}
 
 

@@ -9,7 +9,9 @@ from html import escape
 from typing import Any
 
 from .._fric import __version__
+from .._results.base import counted
 from ._alarms import day
+from ._run import told_once
 from ._trend import Alarm, Change, Series, Trend
 
 FORMAT = "fric-trend/1"
@@ -30,9 +32,9 @@ def since(alarm: Alarm) -> str:
 def headline(trend: Trend) -> str:
     """Returns a sentence that states what was examined."""
     robots = len({one.robot for one in trend.series})
-    counted = f"{trend.logs} logs of {robots} robots, {len(trend.series)} series by fric {trend.operation}"
-    alarms = "nothing has changed" if not trend.alarms else f"{len(trend.alarms)} {'alarm' if len(trend.alarms) == 1 else 'alarms'}"
-    return f"{counted}: {alarms}"
+    examined = f"{counted(trend.logs, 'log')} of {counted(robots, 'robot')}, {len(trend.series)} series by fric {trend.operation}"
+    alarms = "nothing has changed" if not trend.alarms else counted(len(trend.alarms), "alarm")
+    return f"{examined}: {alarms}"
 
 
 def verdict(trend: Trend) -> str:
@@ -43,7 +45,7 @@ def verdict(trend: Trend) -> str:
         return f"Nothing has changed on {fleet}."
     places = list(dict.fromkeys(f"{one.robot} {one.cable}" for one in trend.alarms))
     named = ", ".join(places[:3]) + (f" and {len(places) - 3} more" if len(places) > 3 else "")
-    return f"Something is to be done at {len(places)} {'place' if len(places) == 1 else 'places'} of {fleet}: {named}."
+    return f"Something is to be done at {counted(len(places), 'place')} of {fleet}: {named}."
 
 
 def provenance() -> dict[str, Any]:
@@ -56,12 +58,14 @@ def remarks(trend: Trend) -> list[str]:
     """Returns remarks on logs that are excluded and on series that wander."""
     texts = []
     if trend.undated:
-        texts.append(f"{len(trend.undated)} logs have no date and are left out: their clock begins at 0 (such as {trend.undated[0]})")
+        have = "log has no date and is left out: its" if len(trend.undated) == 1 else "logs have no date and are left out: their"
+        texts.append(f"{len(trend.undated)} {have} clock begins at 0 (such as {trend.undated[0]})")
     if wandering := [one for one in trend.series if one.wanders]:
         names = ", ".join(f"{one.robot} {one.cable} {one.parameter}" for one in wandering[:3])
-        texts.append(f"{len(wandering)} series wander, with no date at which they begin to: {names}{' …' if len(wandering) > 3 else ''}")
+        wander = "wanders, with no date at which it begins to" if len(wandering) == 1 else "wander, with no date at which they begin to"
+        texts.append(f"{len(wandering)} series {wander}: {names}{' …' if len(wandering) > 3 else ''}")
     if trend.failures:
-        texts.append(f"{len(trend.failures)} logs gave no result")
+        texts.append(f"{counted(len(trend.failures), 'log')} gave no result")
     return texts
 
 
@@ -72,7 +76,7 @@ def summary_of(trend: Trend) -> str:
         lines += ["", f"{alarm.robot}, {alarm.cable}, since {since(alarm)}: {alarm.text}"]
         lines += [f"  likely: {alarm.cause}", f"  to do:  {alarm.remedy}"]
     notes = remarks(trend)
-    lines += [""] * bool(notes) + notes + [f"  {one.log}: {one.error}" for one in trend.failures]
+    lines += [""] * bool(notes) + notes + [f"  {logs}: {error}" for logs, error in told_once(trend.failures)]
     return "\n".join(lines) + "\n"
 
 
