@@ -58,7 +58,7 @@ fn a_file_is_loaded_by_its_path() {
 }
 
 #[test]
-fn the_text_buffer_is_cut_to_its_buffer_between_characters() {
+fn the_error_text_is_cut_to_its_buffer_between_characters() {
     let toml = CString::new(ROBOT.replace("name = \"rig\"", "\"näme\" = \"rig\"")).unwrap();
     let full = load(toml.to_str().unwrap()).err().unwrap().1;
     assert!(full.contains("näme"), "{full}");
