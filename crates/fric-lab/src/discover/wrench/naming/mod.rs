@@ -144,18 +144,19 @@ impl<'b, 'a> Search<'b, 'a> {
         if !found.is_empty() {
             self.fits.insert(set_of(&found), self.bench.fit(model, NEAR_ERRORS));
         }
-        let mut named = Vec::new();
         for _ in 0..ROUNDS {
             let refused = self.refused.len();
             self.enter(&mut found);
             self.unite(&mut found);
             self.take_apart(&mut found);
-            named = self.leave(&mut found);
+            self.leave(&mut found);
             let is_exchanged = self.exchange(&mut found);
             if !is_exchanged && self.refused.len() == refused {
                 break;
             }
         }
+        // The last round may have exchanged a name.
+        let mut named = self.leave(&mut found);
         for (place, named) in named.iter_mut().enumerate() {
             named.runner_up = self.runner_up(&found, place);
         }
