@@ -103,6 +103,8 @@ def test_a_page_can_be_read_by_day_and_by_night(pages, name, scheme):
         assert seen["overflow_px"] <= 0 and seen["headings"] and seen["texts"] > 10
         assert seen["drawings"] or name == "fit"
         assert all(100 < width <= WIDTHS_PX[0] for width in seen["drawings"])
+        # The state of each series is the last column of its table.
+        assert name != "fleet" or seen["cut"] == []
 
 
 def test_the_discovery_can_be_printed(pages, tmp_path):

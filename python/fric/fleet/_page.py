@@ -40,9 +40,10 @@ svg .axis { stroke: var(--line); stroke-width: 1; fill: none; } svg .value { fil
 svg .fitted { stroke: var(--after); stroke-width: 2; fill: none; stroke-linejoin: round; } svg .when { fill: var(--flag); opacity: .18; }
 svg .since { stroke: var(--flag); stroke-width: 1.2; } svg .limit { stroke: var(--soft); stroke-width: 1.2; stroke-dasharray: 5 4; }
 a { color: var(--after); } a:focus-visible { outline: 2px solid var(--after); }
-@media (max-width: 40rem) { table.stacked, .stacked caption, .stacked tbody, .stacked tr, .stacked td, .stacked tbody th { display: block; text-align: left; border: 0; padding: 0; }
-  .stacked thead { position: absolute; left: -10000px; } .stacked tr { border-bottom: 1px solid var(--line); padding: .4rem 0; }
-  .stacked td::before { content: attr(data-name) ": "; color: var(--soft); } table { font-size: .85rem; } }
+@media (max-width: 40rem) { table, caption, tbody, tr, td, tbody th { display: block; text-align: left; border: 0; padding: 0; } table { font-size: .85rem; }
+  thead { position: absolute; left: -10000px; } tr { border-bottom: 1px solid var(--line); padding: .4rem 0; }
+  .stacked td::before { content: attr(data-name) ": "; color: var(--soft); }
+  .flowing td, .flowing tbody th { display: inline-block; padding-right: .7rem; } .flowing td.number::before { content: attr(data-name) " "; color: var(--soft); } }
 @media print { body { max-width: none; margin: 0; font-size: 12px; } section.alarm { break-inside: avoid; } a { color: inherit; } }
 """
 _REASONS = {"history": "changed", "limit": "beyond a limit", "last_log": "last log out of line"}
@@ -89,7 +90,7 @@ def _overview(trend: Trend) -> str:
         ]
         for place, one in enumerate(trend.alarms)
     ]
-    return "<h2>What has changed</h2>" + _table("Alarms, the latest first", ["where", "since", "what", "to do"], rows, stacked=True)
+    return "<h2>What has changed</h2>" + _table("Alarms, the latest first", ["where", "since", "what", "to do"], rows, narrow="stacked")
 
 
 def _alarm(trend: Trend, place: int, alarm: Alarm) -> str:
@@ -109,7 +110,7 @@ def _alarm(trend: Trend, place: int, alarm: Alarm) -> str:
         for one in alarm.changes
     ]
     names = ["parameter", "kind", "since (95 %)", "before", "after", "size", "ΔBIC"]
-    changes = _table("Changes; a ΔBIC of −10 is very strong evidence", names, rows, stacked=True) if rows else ""
+    changes = _table("Changes; a ΔBIC of −10 is very strong evidence", names, rows, narrow="stacked") if rows else ""
     head = f"<h3>{escape(alarm.robot)}, {escape(alarm.cable)}: <span>{_REASONS[alarm.reason]}</span></h3>"
     drawn = "".join(_figure(one) for one in sorted(shown, key=lambda one: alarm.parameters.index(one.parameter)))
     return f'<section class="alarm" id="alarm-{place}">{head}<dl>{listed}</dl><div class="views">{drawn}</div>{changes}</section>'
@@ -147,7 +148,7 @@ def _robots(trend: Trend, robots: list[str]) -> str:
         ]
         days = sorted(date for one in of_robot for date in (one.date[0], one.date[-1]))
         caption = f"{robot}, {str(days[0])[:10]} to {str(days[-1])[:10]}"
-        parts.append(_table(caption, ["cable", "parameter", "logs", "at first", "now", "scatter", "state"], rows))
+        parts.append(_table(caption, ["cable", "parameter", "logs", "at first", "now", "scatter", "state"], rows, narrow="flowing"))
     return "".join(parts)
 
 
@@ -161,11 +162,14 @@ def _failures(trend: Trend) -> str:
     if not trend.failures:
         return ""
     rows = [[escape(logs), escape(error)] for logs, error in told_once(trend.failures)]
-    return "<h2>Logs without a result</h2>" + _table("", ["log", "why"], rows, stacked=True)
+    return "<h2>Logs without a result</h2>" + _table("", ["log", "why"], rows, narrow="stacked")
 
 
-def _table(caption: str, names: list[str], rows: list[list[str]], *, stacked: bool = False) -> str:
-    """Returns a table whose cells are HTML. The first cell of each row is its header."""
+def _table(caption: str, names: list[str], rows: list[list[str]], *, narrow: str) -> str:
+    """Returns a table whose cells are HTML. The first cell of each row is its header.
+
+    On a narrow screen a cell is a line (`stacked`), or a row a line that breaks where it has to (`flowing`).
+    """
     numbers = {"logs", "at first", "now", "scatter", "before", "after", "size", "ΔBIC"}
     kinds = ["number" if name in numbers else "words" for name in names]
     head = "".join(f'<th scope="col" role="columnheader" class="{kind}">{name}</th>' for name, kind in zip(names, kinds))
@@ -178,8 +182,8 @@ def _table(caption: str, names: list[str], rows: list[list[str]], *, stacked: bo
         for row in rows
     )
     shown = f"<caption>{escape(caption)}</caption>" if caption else ""
-    # The roles are needed where the cells are stacked, because stacking removes them from the elements.
-    table = f'<table role="table"{" class=stacked" if stacked else ""}>{shown}<thead role="rowgroup"><tr role="row">{head}</tr></thead>'
+    # The roles are needed on narrow screens, where the layout removes them from the elements.
+    table = f'<table role="table" class="{narrow}">{shown}<thead role="rowgroup"><tr role="row">{head}</tr></thead>'
     label = escape(caption or " and ".join(names))
     return (
         f'<div class="scroll" tabindex="0" role="region" aria-label="{label}">{table}<tbody role="rowgroup">{body}</tbody></table></div>'
