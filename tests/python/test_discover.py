@@ -46,8 +46,8 @@ def told(cable):
     attributes = {name: getattr(cable, name) for name in dir(cable) if not name.startswith("_")}
     for name in ("time_s", "residual_before_n", "residual_after_n", "where_in_words"):
         del attributes[name]
-    # These keys are absent where the logs share all values, and where nothing is at the end of its range.
-    for name in ("per_log", "at_bound"):
+    # These keys are absent where the logs share all values, and where nothing is at the end of its range or undetermined.
+    for name in ("per_log", "at_bound", "undetermined"):
         if not attributes[name]:
             del attributes[name]
     for name in ("before", "after"):

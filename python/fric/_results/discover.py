@@ -223,6 +223,8 @@ class CableDiscovery(Value):
     """Standard errors of the fitted values."""
     at_bound: list[str]
     """Friction parameters at the greatest value of their range, which the samples would exceed."""
+    undetermined: list[str]
+    """Parameters whose given value the log contradicts without determining a better one: `parameters` has one of many that agree with the log."""
     per_log: list[LogValues]
     """What each log has of its own (`discover(..., per_log=[...])`), in the order of the logs; empty if they share all values. `parameters` has that of
     the last log."""
@@ -286,6 +288,7 @@ class DiscoverResult(Result):
                 before=ForceError._of(cable.pop("before", None)),
                 after=ForceError._of(cable.pop("after", None)),
                 at_bound=cable.pop("at_bound", []),
+                undetermined=cable.pop("undetermined", []),
                 per_log=cable.pop("per_log", []),
                 where_in_words=words,
                 time_s=time_s,

@@ -1,7 +1,8 @@
 //! Writes the findings of a discovery into a robot file.
 
+use fric_core::parameters::Values;
 use fric_core::robot::edit::set_monitor;
-use fric_core::robot::file::RobotFileError;
+use fric_core::robot::file::{RobotFile, RobotFileError};
 
 use super::faults::Fault;
 use super::report::CableDiscovery;
@@ -10,8 +11,8 @@ use crate::fit::Parameter;
 use crate::fit::rewritten::{NewValues, with_values};
 
 /// Returns the text of a robot file with the extended models of its cables, in the robot's order. It contains the fitted values, every parameter of
-/// each effect that was found, and the monitor's `length_noise_m` where the lengths are noisy. A cable without a verdict keeps its values, and
-/// everything else stays as written. `origin` names the source of the file in error messages.
+/// each effect that was found, [values that the log contradicts without determining them](contradicted), and the monitor's `length_noise_m` where the
+/// lengths are noisy. A cable without a verdict keeps its values, and everything else stays as written. `origin` names the source of the file in error messages.
 ///
 /// A replay with the new file gives the discovery's `after` errors on the same samples, to the last bit. Of a parameter with a value per log the file
 /// has that of the last one, and only on this log the replay gives the same.
@@ -19,9 +20,12 @@ use crate::fit::rewritten::{NewValues, with_values};
 /// # Errors
 /// Returns the [`RobotFileError`] of [`rewrite`](fric_core::robot::edit::rewrite).
 pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Result<String, RobotFileError> {
+    let robot = RobotFile::parse(text, origin)?;
     let new: Vec<NewValues<'_>> = discoveries
         .iter()
-        .map(|cable| {
+        .zip(robot.params().cables())
+        .map(|(cable, given)| {
+            let contradicted = contradicted(cable, &given.values());
             let found = |parameter: &Parameter| {
                 cable.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
             };
@@ -31,6 +35,7 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
             let written = |parameter: &Parameter| {
                 cable.after.fitted.contains(parameter)
                     || is_per_log(parameter)
+                    || contradicted.contains(parameter)
                     || found(parameter) && !is_idle(parameter, &cable.after.values)
             };
             NewValues { values: &cable.after.values, parameters: Parameter::all().filter(written).collect() }
@@ -45,4 +50,20 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
         .iter()
         .find_map(of_length)
         .map_or(Ok(text.clone()), |value| set_monitor(&text, origin, "length_noise_m", value))
+}
+
+/// Returns the parameters that no fit determines, but whose `given` values the log contradicts: their values in the extended model are some of many that
+/// agree with the log.
+pub fn contradicted(cable: &CableDiscovery, given: &Values) -> Vec<Parameter> {
+    let (values, of_findings) =
+        (&cable.after.values, cable.findings.iter().flat_map(|finding| finding.effect.places()));
+    let of_findings: Vec<usize> = of_findings.collect();
+    let is_per_log = |parameter: &Parameter| cable.per_log.iter().flatten().any(|log| log.parameter == *parameter);
+    let is_contradicted = |parameter: &Parameter| {
+        values[parameter.place()].to_bits() != given[parameter.place()].to_bits()
+            && !cable.after.fitted.contains(parameter)
+            && !is_per_log(parameter)
+            && !of_findings.contains(&parameter.place())
+    };
+    Parameter::all().filter(is_contradicted).collect()
 }

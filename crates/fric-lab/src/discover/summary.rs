@@ -108,6 +108,7 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
         told.push(effect.kind);
     }
     text += &cable.bound_in_words().map_or_else(String::new, |bound| line("bound", &bound));
+    text += &cable.undetermined_in_words().map_or_else(String::new, |values| line("open", &values));
     for (count, tried) in cable.tried.iter().take(MOST_TRIED).enumerate() {
         text += &line(if count == 0 { "tried" } else { "" }, &tried.in_words());
     }

@@ -5,6 +5,7 @@ mod drift;
 mod drive;
 mod empirical;
 mod faulty;
+mod undetermined;
 mod wrench;
 
 use fric_core::effects::Effect;

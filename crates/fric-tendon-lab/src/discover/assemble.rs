@@ -95,6 +95,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> T
         parameters: Absent,
         standard_errors: Absent,
         at_bound: Vec::new(),
+        undetermined: Vec::new(),
         faults: Absent,
         unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),
     };

@@ -1,6 +1,6 @@
 //! The findings on one cable.
 
-use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, VISCOUS};
+use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, VISCOUS, Values};
 use serde::Serialize;
 
 use super::effect::{Candidate, EffectResult, TriedResult, effect_result, errors};
@@ -8,6 +8,7 @@ use super::fault::FaultResult;
 use super::finite;
 use super::machine::{Machine, Robot, is_absent};
 use super::place::{UnexplainedResult, WhereResult, unexplained};
+use crate::discover::extended::contradicted;
 use crate::discover::report::{CableDiscovery, Model, Verdict};
 use crate::discover::rest::empirical;
 use crate::errors::ForceError;
@@ -82,6 +83,10 @@ pub struct DiscoverCableResult<M: Machine = Robot> {
     /// Friction parameters at the greatest value of their range, which the log would have beyond it; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub at_bound: Vec<String>,
+    /// Parameters whose given value the log contradicts without determining a better one: `parameters` has one of many that agree with the log. Absent
+    /// if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub undetermined: Vec<String>,
     /// What each log has of its own, in the order of the logs; absent if they share all parameters. `parameters` has the value of the last log.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub per_log: Vec<LogValues>,
@@ -124,6 +129,7 @@ pub fn cable_result(
     found: &CableDiscovery,
     lack: Option<(String, &'static str)>,
     logs: &[String],
+    given: &Values,
 ) -> DiscoverCableResult {
     let samples = found.samples;
     let (before, after) = (ForceError::of(&found.before.held_out_n), ForceError::of(&found.after.held_out_n));
@@ -163,6 +169,7 @@ pub fn cable_result(
         parameters: parameters(found),
         standard_errors: errors(found, Parameter::all(), ToString::to_string),
         at_bound: at_bound(&found.after),
+        undetermined: contradicted(found, given).iter().map(ToString::to_string).collect(),
         per_log: LogValues::of_logs(&found.per_log, logs),
         faults: found.faults.iter().map(FaultResult::of).collect(),
         unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, names)),

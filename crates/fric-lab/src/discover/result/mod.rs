@@ -68,11 +68,12 @@ impl DiscoverResult {
     ) -> Self {
         let names = robot.cable_names();
         let log: Vec<String> = logs.iter().map(|(name, _)| name.clone()).collect();
-        let cables = discoveries.iter().take(names.len()).enumerate();
+        let params = robot.params();
+        let cables = discoveries.iter().zip(params.cables()).enumerate();
         let cables: Vec<DiscoverCableResult> = cables
-            .map(|(place, found)| {
+            .map(|(place, (found, given))| {
                 let lack = readiness.lack_of(place).map(|lack| (lack.cause.clone(), lack.advice));
-                cable_result(place, &names, found, lack, &log)
+                cable_result(place, &names, found, lack, &log, &given.values())
             })
             .collect();
         Self {

@@ -110,6 +110,17 @@ impl DiscoverCableResult {
         })
     }
 
+    /// Returns which values are not determined though the log contradicts those given, as a sentence without its full stop; `None` if there is none.
+    #[must_use]
+    pub fn undetermined_in_words(&self) -> Option<String> {
+        let value = |name: &String| self.parameters.get(name).map(|value| format!("{name} = {}", significant(value)));
+        let values: Vec<String> = self.undetermined.iter().filter_map(value).collect();
+        (!values.is_empty()).then(|| {
+            let values = listed(&values);
+            format!("{values} is one of many values that agree with the log, which contradicts the given one and determines none")
+        })
+    }
+
     /// Returns how many samples were left out because each is off by itself, as a sentence without its full stop; `None` if none was, or if spikes of
     /// the sensor are told.
     #[must_use]

@@ -117,6 +117,7 @@ fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, foun
             ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
         }
         @if let Some(bound) = cable.bound_in_words() { p.soft { (bound) "." } }
+        @if let Some(values) = cable.undetermined_in_words() { p.soft { (values) "." } }
         @if let Some(outliers) = cable.outliers_in_words() { p.soft { (outliers) "." } }
         @if let Some(rest) = &cable.unexplained {
             h3 { "Unexplained" }
