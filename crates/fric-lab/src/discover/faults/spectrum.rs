@@ -75,18 +75,31 @@ impl Times {
         1.0 / (length * self.interval_s)
     }
 
-    /// Puts the numbers of rows where these would be had they no gaps, and 0 where there is none.
-    pub fn spread(&self, rows: &Range<usize>, numbers: &[f64], room: &mut [f64]) {
+    /// Puts the numbers of rows where these would be had they no gaps, and fills what lies between two of them. Before the first and after the last is 0.
+    pub fn spread(&self, rows: &Range<usize>, numbers: &[f64], fill: Fill, room: &mut [f64]) {
         room.fill(0.0);
         let places = self.of_run(rows);
         let Some(first) = places.first() else { return };
+        let mut before: Option<(usize, f64)> = None;
         for (place, number) in places.iter().zip(numbers).filter(|(_, number)| number.is_finite()) {
             // Those after lost rows move on, the last out of the room.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
             let place = (place - first).round() as usize;
+            let hole =
+                before.filter(|_| fill == Fill::Between).map(|(from, of)| (from, of, place.saturating_sub(from)));
+            if let Some((from, of, distance)) = hole.filter(|(.., distance)| *distance > 1) {
+                #[expect(clippy::cast_precision_loss, reason = "counts of rows")]
+                let step = (number - of) / distance as f64;
+                let mut value = of;
+                for room in room.iter_mut().take(place).skip(from + 1) {
+                    value += step;
+                    *room = value;
+                }
+            }
             if let Some(room) = room.get_mut(place) {
                 *room = *number;
             }
+            before = Some((place, *number));
         }
     }
 
@@ -97,6 +110,24 @@ impl Times {
             _ => 1.0,
         };
         self.runs.iter().map(length).fold(1.0, f64::max)
+    }
+}
+
+/// What stands in a row without a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// 0: in a signal with a number in one of every few rows, whose images lie above half the rate of the numbers. A straight line between numbers so far
+    /// apart would take off what is fast.
+    Zero,
+    /// A straight line between the numbers on either side. With 0 in the few rows without a number, what is slow would change as often as those come,
+    /// and stamps that jitter by half a cycle have them in a pattern: its line would be in the spectrum.
+    Between,
+}
+
+impl Fill {
+    /// Of a signal by rows, NaN where there is no number.
+    pub fn of(signal: &[f64]) -> Self {
+        if rows_a_number(signal).is_some() { Self::Zero } else { Self::Between }
     }
 }
 
@@ -144,12 +175,13 @@ impl Spectrum {
         let mut of_stretch = vec![0.0; output.len()];
         let mut powers = of_stretch.clone();
         let mut stretches = 0.0;
+        let fill = Fill::of(signal);
         #[expect(clippy::cast_precision_loss, reason = "a small constant")]
         let window = |place: usize| 0.5 - 0.5 * (TAU * place as f64 / STRETCH as f64).cos();
         for run in &times.runs {
             for start in (run.start..(run.end + 1).saturating_sub(STRETCH)).step_by(STRETCH / 2) {
                 let stretch = start..start + STRETCH;
-                times.spread(&stretch, signal.get(stretch.clone())?, &mut input);
+                times.spread(&stretch, signal.get(stretch.clone())?, fill, &mut input);
                 input.iter_mut().enumerate().for_each(|(place, number)| *number *= window(place));
                 transform.process(&mut input, &mut output).ok()?;
                 of_stretch.iter_mut().zip(&output).for_each(|(power, number)| *power = number.norm_sqr());

@@ -32,9 +32,21 @@ impl WhereResult {
         match self.signal {
             "standstill" if self.from >= 0.5 => return "while the cable rests".to_owned(),
             "standstill" if self.to <= 0.5 => return "while the cable moves".to_owned(),
-            "direction" if self.to <= 0.0 => return "while the cable is reeled in".to_owned(),
-            "direction" if self.from >= 0.0 => return "while the cable is paid out".to_owned(),
-            "standstill" | "direction" => return "throughout".to_owned(),
+            "standstill" => return "throughout".to_owned(),
+            "direction" => {
+                // −1, 0 or 1; the upper end of a range is part of it only if it is the last.
+                let holds = |sign: f64| sign >= self.from && (sign < self.to || is_last && sign <= self.to);
+                return match [-1.0, 0.0, 1.0].map(holds) {
+                    [true, false, false] => "while the cable is reeled in",
+                    [false, true, false] => "while the cable rests",
+                    [false, false, true] => "while the cable is paid out",
+                    // Also of a cable that never rests.
+                    [false, true, true] => "while the cable is not reeled in",
+                    [true, true, false] => "while the cable is not paid out",
+                    _ => "throughout",
+                }
+                .to_owned();
+            }
             "frequency" => return format!("at {:.2} Hz", self.from),
             "way_since_reversal" => {
                 return match (is_first, is_last) {
@@ -117,7 +129,7 @@ impl DiscoverCableResult {
         let values: Vec<String> = self.undetermined.iter().filter_map(value).collect();
         (!values.is_empty()).then(|| {
             let values = listed(&values);
-            format!("{values} is one of many values that agree with the log, which contradicts the given one and determines none")
+            format!("with {values} the model agrees with the log, as with other values; with those given it does not, and none is determined")
         })
     }
 

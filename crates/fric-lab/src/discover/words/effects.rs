@@ -12,11 +12,11 @@ use crate::scale;
 use crate::text::{listed, quantity};
 
 impl EffectResult {
-    /// Returns the parameters with their 95 % intervals.
+    /// Returns the parameters with their 95 % intervals, and says that they are that.
     #[must_use]
     pub fn values_in_words(&self) -> String {
         if let Some(table) = &self.table {
-            return table.in_words();
+            return stating_intervals(table.in_words());
         }
         let one = |parameter: &fric_core::parameters::ParameterRow| {
             let value = self.parameters.get(parameter.key)?;
@@ -24,7 +24,7 @@ impl EffectResult {
             Some(format!("{} {}", name_of(parameter.key), quantity(value, half, parameter.unit)))
         };
         let all: Vec<String> = self.effect.row().parameters.iter().filter_map(one).collect();
-        all.join(", ")
+        stating_intervals(all.join(", "))
     }
 
     /// Returns what to do on the machine, as a clause.
@@ -164,7 +164,7 @@ impl CommonEffect {
             listed(&self.cables)
         };
         let values: Vec<String> = self.parameters.iter().map(CommonParameter::in_words).collect();
-        format!("{} on {on}: {}", self.kind, values.join(", "))
+        stating_intervals(format!("{} on {on}: {}", self.kind, values.join(", ")))
     }
 }
 
@@ -179,6 +179,11 @@ impl CommonParameter {
         }
         format!("{name} {}", quantity(self.mean, Some(HALF_INTERVAL * self.standard_error), self.unit))
     }
+}
+
+/// Says of values with their intervals what the intervals are: a fit shows standard errors.
+fn stating_intervals(values: String) -> String {
+    if values.contains('±') { values + " (95 %)" } else { values }
 }
 
 fn counted(count: usize) -> String {

@@ -149,7 +149,7 @@ fn effect_in_words(effect: &EffectResult) -> Markup {
     html! {
         h3 { (effect.kind) }
         dl {
-            dt { "values" } dd { (effect.values_in_words()) " (95 %)" }
+            dt { "values" } dd { (effect.values_in_words()) }
             dt { "cause" } dd { (effect.effect.row().cause) }
             dt { "remedy" } dd { (effect.remedy()) }
             @if let Some(alternative) = effect.alternative_in_words() { dt { "else" } dd { (alternative) } }

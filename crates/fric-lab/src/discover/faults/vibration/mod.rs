@@ -26,7 +26,7 @@ use realfft::num_complex::Complex;
 
 use self::search::loudest;
 use crate::discover::faults::lines::{LEAST_SHARE, Line, mean_square};
-use crate::discover::faults::spectrum::{LINE_WIDTH, Occurrence, Spectrum, Times, Together, occurrences};
+use crate::discover::faults::spectrum::{Fill, LINE_WIDTH, Occurrence, Spectrum, Times, Together, occurrences};
 use crate::discover::faults::{Fault, RecordingFault};
 use crate::samples::conditions::sign;
 
@@ -88,6 +88,7 @@ impl Vibration {
     pub fn in_signal(&self, signal: &[f64], times: &Times) -> Vec<f64> {
         let mut shown = vec![0.0; signal.len()];
         let mut planner = RealFftPlanner::<f64>::new();
+        let fill = Fill::of(signal);
         for run in &times.runs {
             let (places, numbers) = (times.of_run(run), signal.get(run.clone()).unwrap_or_default());
             let [Some(first), Some(last)] = [places.first(), places.last()] else { continue };
@@ -96,7 +97,7 @@ impl Vibration {
             let length = (2.0 * (last - first + 1.0)).round() as usize;
             let (there, back) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
             let (mut room, mut waves) = (there.make_input_vec(), there.make_output_vec());
-            times.spread(run, numbers, &mut room);
+            times.spread(run, numbers, fill, &mut room);
             if there.process(&mut room, &mut waves).is_err() {
                 continue;
             }
@@ -280,6 +281,37 @@ mod tests {
             assert!(mean_square(&left).sqrt() < 1.05, "{} of {}", mean_square(&left), mean_square(&residual));
             assert!(mean_square(&left).sqrt() > 0.93, "{}", mean_square(&left));
         }
+    }
+
+    /// Stamps of a loop of 2 ms with steps of mostly 2, sometimes 3 ms: a row without a number comes some every eighth. What is slow in the residual is no
+    /// vibration at that rate, and a true vibration and a hum are found as without holes.
+    #[test]
+    fn the_pattern_of_the_stamps_does_not_vibrate() {
+        let mut of_log = Times { interval_s: 2e-3, ..times() };
+        let mut half_cycles = 0_u32;
+        for (place, (at, noise)) in of_log.places.iter_mut().zip(noise(40)).enumerate() {
+            *at = f64::from(half_cycles / 2);
+            // In every fourth row, with a row of jitter now and then.
+            half_cycles += 2 + u32::from(place % 4 == usize::from(noise > 1.5));
+        }
+        let at_s = |row: usize| of_log.places[row] * of_log.interval_s;
+        let slow = |row: usize| 5.0 * (TAU * 0.31 * at_s(row)).sin() + 4.0 * (TAU * 0.83 * at_s(row)).sin();
+        let residual: Vec<f64> = noise(41).iter().enumerate().map(|(row, noise)| noise + slow(row)).collect();
+        assert_eq!(vibration(&residual, &of_log, &[], &[]), None);
+        assert_eq!(lines(&residual, &of_log, &[]), []);
+
+        // In turns a row of this loop, as the oscillator is that of a loop of 1 ms.
+        let shown = [ringing(34.0, 0.02, 0.7), ringing(34.0, 0.02, 0.7), ringing(34.0, 0.02, 0.7)].concat();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the log")]
+        let ringing = |row: usize| 3.0 * shown[of_log.places[row] as usize];
+        let rings: Vec<f64> = residual.iter().enumerate().map(|(row, of)| of + ringing(row)).collect();
+        let found = vibration(&rings, &of_log, &[], &[]).unwrap();
+        assert!((found.frequency_hz / 17.0 - 1.0).abs() < 0.01, "{found:?}");
+        let hums: Vec<f64> =
+            residual.iter().enumerate().map(|(row, of)| of + 0.8 * (TAU * 50.02 * at_s(row)).sin()).collect();
+        let found = lines(&hums, &of_log, &[]);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0].frequency_hz - 50.02).abs() < 1e-3 && (found[0].amplitude() - 0.8).abs() < 0.03, "{found:?}");
     }
 
     /// White noise, a wander, a hum, and the smooth noise of a slow sensor do not ring.
