@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use fric_core::parameters::{OFFSET, Values};
+use fric_core::parameters::{OFFSET, SIGMA, Values};
 use nalgebra::DMatrix;
 
 use super::determined::{HALF_INTERVAL, Yardstick};
@@ -160,7 +160,10 @@ impl Solution {
                     |of: &[Values]| of.get(held.member).map_or(f64::NAN, |values| values[held.parameter.place()]);
                 value(given) - value(&self.values)
             };
-            let stays_open = |held: &Unknown| self.at_bound.contains(held) && knowledge.reaches(held, off(held));
+            // Where σ ends it has no slope, and an interval that says nothing.
+            let has_slope = |held: &Unknown| held.parameter.place() != SIGMA;
+            let stays_open =
+                |held: &Unknown| has_slope(held) && self.at_bound.contains(held) && knowledge.reaches(held, off(held));
             let stays_open = next.as_ref().is_some_and(|(held, _)| stays_open(held));
             (self.covariance, self.unknowns) = (knowledge.covariance, knowledge.unknowns);
             let Some((held, combination)) = next else { return };

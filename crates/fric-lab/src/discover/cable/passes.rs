@@ -121,6 +121,8 @@ impl CableLog<'_> {
             passes += 1;
             let beyond = self.beyond(&bench, &search, &fitted, &named)?;
             if beyond.named.is_empty() {
+                // Its noise is that of the extended model.
+                naming.tried = beyond.tried;
                 break;
             }
             // Beside what is missing, everything has to justify itself again. What does not stay then would still be named from the extended file.
