@@ -11,7 +11,7 @@ use crate::fit::Parameter;
 use crate::fit::rewritten::{NewValues, with_values};
 
 /// Returns the text of a robot file with the extended models of its cables, in the robot's order. It contains the fitted values, every parameter of
-/// each effect that was found, [values that the log contradicts without determining them](contradicted), and the monitor's `length_noise_m` where the
+/// each effect that was found, values that the log contradicts without determining others, and the monitor's `length_noise_m` where the
 /// lengths are noisy. A cable without a verdict keeps its values, and everything else stays as written. `origin` names the source of the file in error messages.
 ///
 /// A replay with the new file gives the discovery's `after` errors on the same samples, to the last bit. Of a parameter with a value per log the file
