@@ -26,17 +26,12 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
         .zip(robot.params().cables())
         .map(|(cable, given)| {
             let contradicted = contradicted(cable, &given.values());
-            let found = |parameter: &Parameter| {
-                cable.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
-            };
-            let is_per_log =
-                |parameter: &Parameter| cable.per_log.iter().flatten().any(|log| log.parameter == *parameter);
             // For a table, only the range of its own condition is written.
             let written = |parameter: &Parameter| {
                 cable.after.fitted.contains(parameter)
-                    || is_per_log(parameter)
+                    || is_per_log(cable, parameter)
                     || contradicted.contains(parameter)
-                    || found(parameter) && !is_idle(parameter, &cable.after.values)
+                    || is_found(cable, parameter) && !is_idle(parameter, &cable.after.values)
             };
             NewValues { values: &cable.after.values, parameters: Parameter::all().filter(written).collect() }
         })
@@ -55,15 +50,21 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
 /// Returns the parameters that no fit determines, but whose `given` values the log contradicts: their values in the extended model are some of many that
 /// agree with the log.
 pub fn contradicted(cable: &CableDiscovery, given: &Values) -> Vec<Parameter> {
-    let (values, of_findings) =
-        (&cable.after.values, cable.findings.iter().flat_map(|finding| finding.effect.places()));
-    let of_findings: Vec<usize> = of_findings.collect();
-    let is_per_log = |parameter: &Parameter| cable.per_log.iter().flatten().any(|log| log.parameter == *parameter);
     let is_contradicted = |parameter: &Parameter| {
-        values[parameter.place()].to_bits() != given[parameter.place()].to_bits()
+        cable.after.values[parameter.place()].to_bits() != given[parameter.place()].to_bits()
             && !cable.after.fitted.contains(parameter)
-            && !is_per_log(parameter)
-            && !of_findings.contains(&parameter.place())
+            && !is_per_log(cable, parameter)
+            && !is_found(cable, parameter)
     };
     Parameter::all().filter(is_contradicted).collect()
+}
+
+/// Whether a parameter is one of an effect that was found.
+fn is_found(cable: &CableDiscovery, parameter: &Parameter) -> bool {
+    cable.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
+}
+
+/// Whether each log has a value of its own.
+fn is_per_log(cable: &CableDiscovery, parameter: &Parameter) -> bool {
+    cable.per_log.iter().flatten().any(|log| log.parameter == *parameter)
 }

@@ -85,15 +85,12 @@ impl Times {
             // Those after lost rows move on, the last out of the room.
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
             let place = (place - first).round() as usize;
-            let hole =
-                before.filter(|_| fill == Fill::Between).map(|(from, of)| (from, of, place.saturating_sub(from)));
-            if let Some((from, of, distance)) = hole.filter(|(.., distance)| *distance > 1) {
-                #[expect(clippy::cast_precision_loss, reason = "counts of rows")]
-                let step = (number - of) / distance as f64;
-                let mut value = of;
-                for room in room.iter_mut().take(place).skip(from + 1) {
-                    value += step;
-                    *room = value;
+            if let Some((from, of)) = before.filter(|_| fill == Fill::Between) {
+                let width = places_between(from, place);
+                for between in from + 1..place {
+                    if let Some(room) = room.get_mut(between) {
+                        *room = of + (number - of) * places_between(from, between) / width;
+                    }
                 }
             }
             if let Some(room) = room.get_mut(place) {
@@ -111,6 +108,11 @@ impl Times {
         };
         self.runs.iter().map(length).fold(1.0, f64::max)
     }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of rows")]
+fn places_between(from: usize, to: usize) -> f64 {
+    to.saturating_sub(from) as f64
 }
 
 /// What stands in a row without a number.

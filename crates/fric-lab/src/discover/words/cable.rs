@@ -114,23 +114,23 @@ impl DiscoverCableResult {
     /// Returns which friction parameters are at the end of their range, as a sentence without its full stop; `None` if none is.
     #[must_use]
     pub fn bound_in_words(&self) -> Option<String> {
-        let value = |name: &String| self.parameters.get(name).map(|value| format!("{name} = {}", significant(value)));
-        let values: Vec<String> = self.at_bound.iter().filter_map(value).collect();
-        (!values.is_empty()).then(|| {
-            let values = listed(&values);
-            format!("{values} is the end of the range; no pulley rubs so much: compare units, zero and pulleys")
-        })
+        let values = self.values_of(&self.at_bound)?;
+        Some(format!("{values} is the end of the range; no pulley rubs so much: compare units, zero and pulleys"))
     }
 
-    /// Returns which values are not determined though the log contradicts those given, as a sentence without its full stop; `None` if there is none.
+    /// Returns which given values the log contradicts without determining others, as a sentence without its full stop; `None` if it contradicts none.
     #[must_use]
     pub fn undetermined_in_words(&self) -> Option<String> {
+        let values = self.values_of(&self.undetermined)?;
+        Some(format!(
+            "the log contradicts the given value but does not determine a better one; {values} is one of many that agree"
+        ))
+    }
+
+    fn values_of(&self, names: &[String]) -> Option<String> {
         let value = |name: &String| self.parameters.get(name).map(|value| format!("{name} = {}", significant(value)));
-        let values: Vec<String> = self.undetermined.iter().filter_map(value).collect();
-        (!values.is_empty()).then(|| {
-            let values = listed(&values);
-            format!("with {values} the model agrees with the log, as with other values; with those given it does not, and none is determined")
-        })
+        let values: Vec<String> = names.iter().filter_map(value).collect();
+        (!values.is_empty()).then(|| listed(&values))
     }
 
     /// Returns how many samples were left out because each is off by itself, as a sentence without its full stop; `None` if none was, or if spikes of
