@@ -37,6 +37,9 @@ pub type Series<'a> = Cow<'a, [Vector6<f64>]>;
 /// Step of the finite differences, as a fraction of [`Description::size`]. All functions here are nearly linear over it, and rounding is 1e-12 of it.
 const STEP_RATIO: f64 = 1e-4;
 
+/// Minimum mass, as a fraction of the stated one. A platform without weight on slack cables is always in balance.
+const LEAST_MASS_RATIO: f64 = 0.1;
+
 impl Geometry {
     /// Returns its key in the robot file.
     #[must_use]
@@ -225,6 +228,11 @@ impl<'a> Description<'a> {
             Geometry::Gravity => self.robot.gravity_m_per_s2().norm(),
             Geometry::CenterOfMass | Geometry::Base(_) | Geometry::Attachment(_) => 1.0,
         }
+    }
+
+    /// Whether an entry is corrected by more than can be.
+    pub fn is_at_end(&self, of: Geometry, changes: &Changes) -> bool {
+        of == Geometry::Mass && self.mass_kg(changes) < LEAST_MASS_RATIO * self.robot.mass_kg()
     }
 
     /// Returns the usual error of an entry's numbers: the whole mass, because of payloads; 1° of the vertical; 10 mm of a point.

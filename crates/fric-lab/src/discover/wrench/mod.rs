@@ -10,6 +10,7 @@
 
 mod bench;
 mod candidate;
+mod covariance;
 mod geometry;
 mod naming;
 mod report;
@@ -23,6 +24,7 @@ use fric_core::robot::file::{RobotFile, RobotFileError};
 use nalgebra::{Matrix6, Vector6};
 
 use self::bench::{Bench, Trial};
+use self::covariance::whitening;
 use self::geometry::{Changes, Description};
 use self::naming::{Believed, Naming, Search};
 use self::sensors::Sensors;
@@ -31,19 +33,16 @@ use super::extended::extended;
 use super::naming::Refusal;
 use super::report::{CableDiscovery, Verdict};
 use crate::fit::wrench::{ReferenceWrenches, first_model};
-use crate::fit::{CableRecord, FitError, Measurements, Progress};
+use crate::fit::{CableRecord, FitError, Measurements, Progress, Stages};
 use crate::replay::{WrenchErrors, WrenchReference};
 use crate::samples::split::split;
 
 pub use geometry::Geometry;
 
-/// Maximum number of searches. Each starts from the names of the one before, with the whitening and the noise of its model.
+/// Maximum number of searches in a chain. Each starts from the names of the one before, with the whitening and the noise of its model.
 const LOOKS: usize = 3;
 /// Distance from its minimum to which the reported model is optimised, in standard errors.
 const AT_MINIMUM: f64 = 0.1;
-/// With all components on one scale, a direction with less than this fraction of the greatest variance contains only rounding errors.
-const LEAST_VARIANCE_RATIO: f64 = 1e-9;
-
 /// The result for all cables together.
 #[derive(Clone, Debug)]
 pub struct WrenchDiscovery {
@@ -106,7 +105,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     let measurements = &sensors.measurements;
     let references = ReferenceWrenches::of(measurements)?;
     let records: Vec<CableRecord<'_>> = measurements.cables().collect();
-    progress.begin(LOOKS + 1);
+    progress.begin(2 * LOOKS + 1);
     let is_sound = |place: usize| sensors.is_faulty.get(place) != Some(&true);
     let first = first_model(measurements, &references, &is_sound, acts, progress);
     let description = Description {
@@ -128,25 +127,16 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     let given = bench::Model { values: first.values, free: first.free, alike: Vec::new(), changes: Changes::new() };
     bench.whitening = whitening(&bench, &given).ok_or_else(too_short)?;
     let base = bench.fit(&given, AT_MINIMUM);
-    let mut naming = Naming { trial: base.clone(), named: Vec::new(), tried: Vec::new() };
-    for _ in 0..LOOKS {
-        bench.whitening = whitening(&bench, &naming.trial.model).ok_or_else(too_short)?;
-        let noise = noise_of(&bench, &naming.trial).ok_or_else(too_short)?;
-        let believed_square = |cables| bench.believed_square(&naming.trial.model, BELIEVED_RATIO, cables);
-        let count = bench.records.len();
-        let unit_square = bench.unit_square(&naming.trial.model);
-        let believed = Believed {
-            apart: unit_square * (0..count).map(|cable| believed_square(cable..cable + 1)).sum::<f64>(),
-            together: unit_square * believed_square(0..count),
-        };
-        let noise_square = unit_square * noise.iter().map(|noise| noise * noise).sum::<f64>() + believed.apart;
-        let again = bench.judged(base.model.clone());
-        let search = Search::new(&bench, again, noise_square, believed);
-        let before = naming.named.iter().map(|named| named.candidate).collect::<Vec<_>>();
-        naming = search.run(&naming.named, &naming.trial.model);
-        progress.finish_one();
-        if naming.named.iter().all(|named| before.contains(&named.candidate)) {
-            break;
+    let nothing = Naming { trial: base.clone(), named: Vec::new(), tried: Vec::new(), is_complete: false };
+    let mut naming = searched(&mut bench, &base, nothing, progress)?;
+    if !naming.is_complete {
+        let whitening = bench.whitening;
+        let start = naming::sensors_doubted(&mut bench, &base).ok_or_else(too_short)?;
+        let of_sensors = searched(&mut bench, &base, start, progress)?;
+        if naming::is_better(&bench, &of_sensors, &naming) {
+            naming = of_sensors;
+        } else {
+            bench.whitening = whitening;
         }
     }
     // The reported model is fitted to all samples, as an identification does it.
@@ -164,6 +154,32 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         times_s: measurements.times_s(),
     }
     .report(covariances.map(|[covariance, _]| covariance))
+}
+
+/// Returns what a chain of searches names that begins with some names, and leaves the whitening of the last one.
+fn searched(bench: &mut Bench<'_>, base: &Trial, mut naming: Naming, progress: &Progress) -> Result<Naming, FitError> {
+    let stages = Stages::new(progress, LOOKS);
+    for _ in 0..LOOKS {
+        bench.whitening = whitening(bench, &naming.trial.model).ok_or_else(too_short)?;
+        let noise = noise_of(bench, &naming.trial).ok_or_else(too_short)?;
+        let believed_square = |cables| bench.believed_square(&naming.trial.model, BELIEVED_RATIO, cables);
+        let count = bench.records.len();
+        let unit_square = bench.unit_square(&naming.trial.model);
+        let believed = Believed {
+            apart: unit_square * (0..count).map(|cable| believed_square(cable..cable + 1)).sum::<f64>(),
+            together: unit_square * believed_square(0..count),
+        };
+        let noise_square = unit_square * noise.iter().map(|noise| noise * noise).sum::<f64>() + believed.apart;
+        let again = bench.judged(base.model.clone());
+        let search = Search::new(bench, again, noise_square, believed);
+        let before = naming.named.iter().map(|named| named.candidate).collect::<Vec<_>>();
+        naming = search.run(&naming.named, &naming.trial.model);
+        stages.finish_one();
+        if naming.named.iter().all(|named| before.contains(&named.candidate)) {
+            break;
+        }
+    }
+    Ok(naming)
 }
 
 /// Returns a model in which friction that the samples do not determine beside the names has its given values and is not varied.
@@ -185,24 +201,6 @@ fn too_short() -> FitError {
         "the log is too short to tell what the noise of the wrench is".to_owned(),
         "Record a run of 10 s or longer in which the platform moves.",
     )
-}
-
-/// Returns the matrix that turns the deviations of a model into independent ones of variance 1; `None` if there are none. Directions in which a robot
-/// has no deviations are left out, such as the torques of a platform that is a point.
-fn whitening(bench: &Bench<'_>, model: &bench::Model) -> Option<Matrix6<f64>> {
-    let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
-    let deviations = plain.deviations(model);
-    let finite = || deviations.iter().filter(|deviation| deviation.iter().all(|part| part.is_finite()));
-    let count = finite().fold(0.0, |count, _| count + 1.0);
-    let covariance = finite().map(|deviation| deviation * deviation.transpose()).sum::<Matrix6<f64>>() / count;
-    // The unit of each component is its standard deviation, so that forces and torques can be compared.
-    let size = |component: usize| covariance[(component, component)].sqrt();
-    let unit = Matrix6::from_fn(|row, column| if row == column && size(row) > 0.0 { size(row).recip() } else { 0.0 });
-    let eigen = (unit * covariance * unit).symmetric_eigen();
-    let greatest = eigen.eigenvalues.max();
-    let root = |value: f64| if value > LEAST_VARIANCE_RATIO * greatest { value.sqrt().recip() } else { 0.0 };
-    let scaled = Matrix6::from_diagonal(&eigen.eigenvalues.map(root)) * eigen.eigenvectors.transpose() * unit;
-    (greatest > 0.0 && scaled.iter().all(|entry| entry.is_finite())).then_some(scaled)
 }
 
 /// Returns the standard deviation of the white noise in each component of the deviations; `None` if there are too few.

@@ -8,7 +8,7 @@ use super::{LEAST_ALIKE, LEAST_AWAY, MOST, NEAR_ERRORS, Search, set_of};
 use crate::candidates::catalogue::{fitted, has};
 use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::{LEAST_GAIN, LEAST_SIZE, NEGLIGIBLE, Refusal, STRONG_BIC};
-use crate::discover::wrench::bench::{Model, Trial};
+use crate::discover::wrench::bench::Trial;
 use crate::discover::wrench::candidate::Candidate;
 use crate::discover::wrench::screen::Promises;
 use crate::fit::Parameter;
@@ -65,8 +65,8 @@ impl Search<'_, '_> {
         }
         let mut model = trial.model.clone();
         model.free.iter_mut().for_each(|free| free.extend(fitted(Effect::SensorGain)));
-        let count = each.len();
-        self.enters_apart(found, found.clone(), &model, each, count, LEAST_ALIKE)
+        let apart = self.bench.fit(&model, NEAR_ERRORS);
+        self.enters(found, found.clone(), each, apart, LEAST_ALIKE)
     }
 
     /// Returns the decrease of the held-out squares that a candidate needs to enter.
@@ -107,53 +107,57 @@ impl Search<'_, '_> {
     /// strong. Cables that do not need the effect lose it when names leave. If they got it one by one, another effect would enter before.
     fn spread(&mut self, found: &mut Vec<Candidate>, candidate: Candidate) {
         let Some(effect) = candidate.effect() else { return };
-        let trial = self.fit(found);
-        if scales_all(self.bench, &trial.model, Candidate::Alike(effect)) {
+        if (0..self.bench.records.len()).all(|cable| found.contains(&Candidate::Own(cable, effect))) {
             return;
         }
-        let own = fitted(effect);
+        let Some((each, apart)) = self.apart(found, effect) else { return };
         let others: Vec<Candidate> = found.iter().copied().filter(|of| of.effect() != Some(effect)).collect();
-        let is_alike = matches!(candidate, Candidate::Alike(_));
-        let before = if is_alike { 1 } else { found.len() - others.len() };
-        let mut model = trial.model.clone();
+        if self.enters(found, others, each, apart, 0) && matches!(candidate, Candidate::Alike(_)) {
+            self.refused.insert(candidate, Refusal::Unsteady("cable"));
+        }
+    }
+
+    /// Returns the effect as a candidate of each cable with its own parameters, and the model with these instead of the names of that effect; `None` if
+    /// the effect promises nothing on some cable.
+    pub(super) fn apart(&mut self, found: &[Candidate], effect: Effect) -> Option<(Vec<Candidate>, Trial)> {
+        let mut model = self.fit(found).model;
+        if scales_all(self.bench, &model, Candidate::Alike(effect)) {
+            return None;
+        }
+        let others: Vec<Candidate> = found.iter().copied().filter(|of| of.effect() != Some(effect)).collect();
         model.alike.retain(|of| of.effect() != Some(effect));
-        let count = self.bench.records.len();
-        for cable in 0..count {
+        let each: Vec<Candidate> = (0..self.bench.records.len()).map(|cable| Candidate::Own(cable, effect)).collect();
+        for (cable, of_cable) in each.iter().enumerate() {
             if !has(effect, &model.values[cable]) {
-                let of_cable = Candidate::Own(cable, effect);
-                let promise =
-                    self.promises(&others).of_candidates.iter().find(|promise| promise.candidate == of_cable).cloned();
-                let Some(promise) = promise else { return };
+                let promise = self
+                    .promises(&others)
+                    .of_candidates
+                    .iter()
+                    .find(|promise| promise.candidate == *of_cable)
+                    .cloned()?;
                 for place in Parameter::of(effect).map(|of| of.place()) {
                     model.values[cable][place] = promise.model.values[cable][place];
                 }
             }
             let free = &mut model.free[cable];
-            free.extend(own.iter().copied().filter(|of| !free.contains(of)).collect::<Vec<Parameter>>());
+            let missing: Vec<Parameter> = fitted(effect).into_iter().filter(|of| !free.contains(of)).collect();
+            free.extend(missing);
         }
-        let more = own.len() * (count - before);
-        if more == 0 {
-            return;
-        }
-        let each: Vec<Candidate> = (0..count).map(|cable| Candidate::Own(cable, effect)).collect();
-        if self.enters_apart(found, others, &model, each, more, 0) && is_alike {
-            self.refused.insert(candidate, Refusal::Unsteady("cable"));
-        }
+        Some((each, self.bench.fit(&model, NEAR_ERRORS)))
     }
 
-    /// Puts effects of each cable in the place of others if the evidence for their `more` parameters is strong, and at least `needed` of the effects are
+    /// Puts effects of each cable in the place of others if the evidence for the model with them is strong, and at least `needed` of the effects are
     /// significant. Returns whether it did.
-    fn enters_apart(
+    fn enters(
         &mut self,
         found: &mut Vec<Candidate>,
         others: Vec<Candidate>,
-        model: &Model,
         each: Vec<Candidate>,
-        more: usize,
+        apart: Trial,
         needed: usize,
     ) -> bool {
         let trial = self.fit(found);
-        let apart = self.bench.fit(model, NEAR_ERRORS);
+        let more = apart.model.unknowns().len().saturating_sub(trial.model.unknowns().len());
         let standings = standings(self.bench, &apart, &each);
         let inflation = standings.iter().map(|standing| standing.inflation).fold(1.0, f64::max);
         let enters = apart.held_out < trial.held_out

@@ -172,7 +172,7 @@ impl Search<'_, '_> {
         trial.model.changes.iter().map(of).sum()
     }
 
-    /// Whether a parameter of a candidate is stuck at a bound of its range.
+    /// Whether a parameter of a candidate is stuck at a bound of its range, or beyond what can be.
     pub(super) fn is_at_end(&self, candidate: Candidate, trial: &Trial) -> bool {
         let cycle_s = self.bench.records.first().map_or(f64::NAN, |record| record.cycle_s);
         let is_at = |cable: usize, effect| {
@@ -181,7 +181,7 @@ impl Search<'_, '_> {
         match candidate {
             Candidate::Own(cable, effect) => is_at(cable, effect),
             Candidate::Alike(effect) => is_at(0, effect),
-            Candidate::Geometry(_) => false,
+            Candidate::Geometry(of) => self.bench.description.is_at_end(of, &trial.model.changes),
         }
     }
 

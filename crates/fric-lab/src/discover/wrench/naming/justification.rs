@@ -2,20 +2,28 @@
 
 use std::collections::BTreeMap;
 
-use super::standing::{Standing, standings};
-use super::{LEAST_AWAY, Named, Search, without};
+use fric_core::effects::Effect;
+
+use super::doubt::is_of_one_sensor;
+use super::standing::{Standing, disagreement, standings};
+use super::{LEAST_ALIKE, LEAST_AWAY, Named, Search, without};
 use crate::discover::naming::{LEAST_SIZE, Refusal, STRONG_BIC};
 use crate::discover::wrench::bench::Trial;
 use crate::discover::wrench::candidate::Candidate;
 
 impl Search<'_, '_> {
-    /// Sets aside names that cannot stay, the least significant first, and returns the others with their evidence.
+    /// Sets aside names that cannot stay, the least significant first, and returns the others with their evidence. Where several sensors are doubted, these
+    /// come last: what entered beside them may make up for some of their errors.
     pub(super) fn leave(&mut self, found: &mut Vec<Candidate>) -> Vec<Named> {
         loop {
             let trial = self.fit(found);
             let mut weakest_first: Vec<(Standing, Candidate)> =
                 standings(self.bench, &trial, found).into_iter().zip(found.iter().copied()).collect();
-            weakest_first.sort_by(|(one, _), (other, _)| one.away.total_cmp(&other.away));
+            let are_doubted = found.iter().filter(|of| is_of_one_sensor(**of)).count() >= LEAST_ALIKE;
+            weakest_first.sort_by(|(one, of), (other, beside)| {
+                let [one_late, other_late] = [of, beside].map(|of| are_doubted && is_of_one_sensor(*of));
+                one_late.cmp(&other_late).then(one.away.total_cmp(&other.away))
+            });
             let mut named = BTreeMap::new();
             let mut refused = None;
             for (standing, candidate) in weakest_first {
@@ -57,10 +65,22 @@ impl Search<'_, '_> {
             Some(Refusal::Weak)
         } else if !self.is_more_than_usual(candidate, trial) {
             Some(Refusal::Usual)
+        } else if let Candidate::Alike(effect) = candidate
+            && self.do_cables_differ(found, effect, trial)
+        {
+            Some(Refusal::Unsteady("cable"))
         } else {
             None
         };
         (delta_bic, refusal)
+    }
+
+    /// Whether cables need parameters of their own for an effect that all have alike: these differ significantly, and what that explains matters.
+    fn do_cables_differ(&mut self, found: &[Candidate], effect: Effect, trial: &Trial) -> bool {
+        let Some((_, apart)) = self.apart(found, effect) else { return false };
+        let least_square = (LEAST_SIZE * self.noise_square).max(self.believed.apart);
+        trial.held_out - apart.held_out > self.held_out_squares(least_square)
+            && disagreement(self.bench, &apart, effect) > LEAST_AWAY
     }
 
     /// Returns the decrease of the squares over the held-out blocks except the one in which it is greatest, in variances of the noise.

@@ -7,12 +7,14 @@
 //!    once: where every sensor is wrong, the friction has made up for that, and no sensor alone explains much. Several cables with the same effect
 //!    become one effect with the same parameters if that explains as much, and the other way round.
 //! 2. *Leave.* A name stays if the evidence for it is strong, also outside the block in which it helps most; it is large enough to matter; it exceeds
-//!    what robots without it show; and its parameters keep clear of their bounds. The least significant name that cannot stay is set aside, and does not
-//!    return in this search.
+//!    what robots without it show; its parameters keep clear of their bounds; and cables that have it alike agree in it. The least significant name that
+//!    cannot stay is set aside, and does not return in this search.
 //! 3. *Exchange.* Each name is compared with the best other candidate in its place.
 //!
-//! The search ends if nothing changes, and in any case after [`ROUNDS`] rounds of at most [`MOST`] names.
+//! The search ends if nothing changes, and in any case after [`ROUNDS`] rounds of at most [`MOST`] names. If something is left then, another one begins
+//! with all force sensors in doubt.
 
+mod doubt;
 mod entry;
 mod exchange;
 mod fits;
@@ -27,6 +29,9 @@ use super::candidate::Candidate;
 use super::geometry::Geometry;
 use super::screen::Promises;
 use crate::discover::naming::Refusal;
+use crate::discover::rest::WORTH;
+
+pub use self::doubt::{is_better, sensors_doubted};
 
 /// Maximum number of names.
 const MOST: usize = 16;
@@ -65,6 +70,8 @@ pub struct Naming {
     pub named: Vec<Named>,
     /// Candidates that help this model but do not suffice, the best first.
     pub tried: Vec<Tried>,
+    /// Whether the model leaves nothing beside the noise that needs an explanation.
+    pub is_complete: bool,
 }
 
 impl Naming {
@@ -161,7 +168,9 @@ impl<'b, 'a> Search<'b, 'a> {
             named.runner_up = self.runner_up(&found, place);
         }
         let tried = self.tried(&found);
-        Naming { trial: self.fit(&found), named, tried }
+        let trial = self.fit(&found);
+        let is_complete = self.excess(&trial) <= WORTH;
+        Naming { trial, named, tried, is_complete }
     }
 }
 

@@ -1,7 +1,9 @@
 //! How significant the names of a model are.
 
-use nalgebra::DVector;
+use fric_core::effects::Effect;
+use nalgebra::{DMatrix, DVector};
 
+use crate::candidates::catalogue::fitted;
 use crate::candidates::ripple::is_period;
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::wrench::bench::{Bench, Model, Trial, Unknown};
@@ -48,6 +50,36 @@ pub fn standings(bench: &Bench<'_>, trial: &Trial, candidates: &[Candidate]) -> 
         Some(Standing { inflation, away })
     };
     candidates.iter().map(|candidate| of(candidate).unwrap_or(Standing::UNDETERMINED)).collect()
+}
+
+/// Returns how much the cables of a model differ in the parameters of an effect that each has on its own: `χ²` of the differences minus its degrees of
+/// freedom, in standard deviations of that. 0 if the samples do not determine the parameters.
+pub fn disagreement(bench: &Bench<'_>, apart: &Trial, effect: Effect) -> f64 {
+    let unknowns = apart.model.unknowns();
+    let known = |covariances: [DMatrix<f64>; 2]| {
+        let [covariance, _] = covariances;
+        let place_of = |cable: usize, parameter: &Parameter| {
+            unknowns.iter().position(|unknown| *unknown == Unknown::Own(cable, *parameter))
+        };
+        let parameters: Vec<Parameter> = fitted(effect);
+        let pairs = (1..bench.records.len()).flat_map(|cable| parameters.iter().map(move |of| (cable, *of)));
+        let pairs: Vec<(usize, usize, f64)> = pairs
+            .map(|(cable, of)| {
+                let difference = apart.model.values[cable][of.place()] - apart.model.values[0][of.place()];
+                Some((place_of(cable, &of)?, place_of(0, &of)?, difference))
+            })
+            .collect::<Option<_>>()?;
+        let of_difference = DMatrix::from_fn(pairs.len(), unknowns.len(), |row, column| {
+            let (one, other, _) = pairs[row];
+            f64::from(u8::from(column == one)) - f64::from(u8::from(column == other))
+        });
+        let differences = DVector::from_iterator(pairs.len(), pairs.iter().map(|(_, _, difference)| *difference));
+        let inverse = inverse_of_normal(&(&of_difference * covariance * of_difference.transpose()))?;
+        #[expect(clippy::cast_precision_loss, reason = "a few parameters")]
+        let freedom = pairs.len() as f64;
+        Some(((differences.transpose() * inverse * &differences)[(0, 0)] - freedom) / (2.0 * freedom).sqrt())
+    };
+    bench.covariances(&apart.model).and_then(known).unwrap_or(0.0)
 }
 
 fn away_from_neutral(model: &Model, unknown: &Unknown) -> f64 {
