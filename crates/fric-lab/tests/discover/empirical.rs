@@ -179,10 +179,8 @@ fn the_force_of_another_cable_becomes_no_table() {
 #[test]
 fn a_load_that_hardly_varies_gets_no_table() {
     for seed in 0..6 {
-        let found = {
-            let log = bench_under_constant_force(seed);
-            log.look(&log.robot, DiscoverOptions::default())
-        };
+        let log = bench_under_constant_force(seed);
+        let found = log.look(&log.robot, DiscoverOptions::default());
         assert!(
             kinds(&found).iter().all(|kind| !["empirical", "sensor_gain"].contains(kind)),
             "{seed}: {:?}",
@@ -199,8 +197,8 @@ fn bench_under_constant_force(seed: u64) -> Log {
         let number: f64 = StandardNormal.sample(&mut random);
         deviation_n * number
     };
-    let at = |cycle: usize| {
-        let angle = TAU * 0.001 * f64::from(u32::try_from(cycle).unwrap());
+    let at = |cycle: u32| {
+        let angle = TAU * 0.001 * f64::from(cycle);
         (1.0 + 0.1 * angle.sin(), 0.1 * TAU / 4.0 * angle.cos())
     };
     // The friction, and where and at which friction the motion turned last.
@@ -213,8 +211,7 @@ fn bench_under_constant_force(seed: u64) -> Log {
         }
         let end_n = 6.0 * speed_m_per_s.signum();
         friction_n = end_n - (end_n - turned.1) * (-(length_m - turned.0).abs() / 0.008).exp();
-        let load_n =
-            250.0 - 0.06 * friction_n + 0.2 * (TAU * 0.004 / 7.0 * f64::from(u32::try_from(cycle).unwrap())).sin();
+        let load_n = 250.0 - 0.06 * friction_n + 0.2 * (TAU * 0.004 / 7.0 * f64::from(cycle)).sin();
         let cable = CableInput { sensor_force_n: load_n - friction_n + noise(0.1), length_m, speed_m_per_s };
         points.push((stamp_nanos, cable, load_n + noise(0.05), None));
     }
