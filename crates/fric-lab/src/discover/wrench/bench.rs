@@ -302,6 +302,16 @@ impl<'a> Bench<'a> {
         all
     }
 
+    /// Returns the standard deviation of the white noise in each component of a model's deviations; `None` if there are too few.
+    pub fn noise(&self, model: &Model) -> Option<[f64; 6]> {
+        let deviations = self.deviations(model);
+        let mut noise = [0.0; 6];
+        for (component, noise) in noise.iter_mut().enumerate() {
+            *noise = self.white_noise(deviations.iter().map(|deviation| deviation[component]))?;
+        }
+        Some(noise)
+    }
+
     /// Returns the standard deviation of the white noise in a series with one number per sample, NaN if the sample does not count; `None` if there are
     /// too few. Samples with an interpolated reference are included if they are the majority: they have the full noise of the sensors and hardly any of
     /// the reference.

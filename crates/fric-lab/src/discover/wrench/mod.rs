@@ -24,11 +24,11 @@ use fric_core::robot::file::{RobotFile, RobotFileError};
 use nalgebra::{Matrix6, Vector6};
 
 use self::bench::{Bench, Trial};
-use self::covariance::whitening;
+use self::covariance::{reweighted, whitening};
 use self::geometry::{Changes, Description};
-use self::naming::{Believed, Naming, Search};
+use self::naming::{Naming, Search};
 use self::sensors::Sensors;
-use super::cable::{BELIEVED_RATIO, acts};
+use super::cable::acts;
 use super::extended::extended;
 use super::naming::Refusal;
 use super::report::{CableDiscovery, Verdict};
@@ -127,22 +127,34 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     let given = bench::Model { values: first.values, free: first.free, alike: Vec::new(), changes: Changes::new() };
     bench.whitening = whitening(&bench, &given).ok_or_else(too_short)?;
     let base = bench.fit(&given, AT_MINIMUM);
-    let nothing = Naming { trial: base.clone(), named: Vec::new(), tried: Vec::new(), is_complete: false };
-    let mut naming = searched(&mut bench, &base, nothing, progress)?;
-    if !naming.is_complete {
-        let whitening = bench.whitening;
-        let start = naming::sensors_doubted(&mut bench, &base).ok_or_else(too_short)?;
-        let of_sensors = searched(&mut bench, &base, start, progress)?;
-        if naming::is_better(&bench, &of_sensors, &naming) {
-            naming = of_sensors;
-        } else {
-            bench.whitening = whitening;
+    let nothing = Naming::start(base.clone(), &bench.whitening, Vec::new());
+    let mut search = Search::new(&bench, &base, &base.model).ok_or_else(too_short)?;
+    let (start, other_start) = match naming::sensors_doubted(&bench, &base) {
+        Some(doubted) if search.is_worse_than(&doubted) => {
+            search = Search::new(&bench, &base, &doubted.trial.model).ok_or_else(too_short)?;
+            (doubted, Some(nothing))
+        }
+        doubted => (nothing, doubted),
+    };
+    let mut naming = searched(&bench, &base, search, start, progress)?;
+    if let Some(start) = other_start.filter(|_| !naming.is_complete) {
+        let search = Search::new(&bench, &base, &start.trial.model).ok_or_else(too_short)?;
+        let other = searched(&bench, &base, search, start, progress)?;
+        if naming::is_better(&bench, &other, &naming.trial, &naming.candidates()) {
+            naming = other;
         }
     }
-    // The reported model is fitted to all samples, as an identification does it.
+    // The reported model is fitted to all samples, as an identification does it, with the covariance of its own deviations.
     let mut all = bench.clone();
     all.blocks.iter_mut().for_each(|block| block.held_out = false);
-    let fitted = naming.confirmed(&all, |model| all.fit(&with_given(&all, model), AT_MINIMUM));
+    all.whitening = naming.whitening;
+    let fitted = naming.confirmed(&all, |model| {
+        let fit = |bench: &Bench<'_>, model: &bench::Model| bench.fit(&with_given(bench, model), AT_MINIMUM);
+        reweighted(&all, fit(&all, model), fit)
+    });
+    let (fitted, whitening) = fitted.ok_or_else(too_short)?;
+    all.whitening = whitening;
+    bench.whitening = whitening;
     let covariances = all.covariances(&fitted.model);
     report::Case {
         bench: &bench,
@@ -156,28 +168,23 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     .report(covariances.map(|[covariance, _]| covariance))
 }
 
-/// Returns what a chain of searches names that begins with some names, and leaves the whitening of the last one.
-fn searched(bench: &mut Bench<'_>, base: &Trial, mut naming: Naming, progress: &Progress) -> Result<Naming, FitError> {
+/// Returns what a chain of searches names that begins with some names.
+fn searched<'a>(
+    bench: &Bench<'a>,
+    base: &Trial,
+    mut search: Search<'a>,
+    mut naming: Naming,
+    progress: &Progress,
+) -> Result<Naming, FitError> {
     let stages = Stages::new(progress, LOOKS);
-    for _ in 0..LOOKS {
-        bench.whitening = whitening(bench, &naming.trial.model).ok_or_else(too_short)?;
-        let noise = noise_of(bench, &naming.trial).ok_or_else(too_short)?;
-        let believed_square = |cables| bench.believed_square(&naming.trial.model, BELIEVED_RATIO, cables);
-        let count = bench.records.len();
-        let unit_square = bench.unit_square(&naming.trial.model);
-        let believed = Believed {
-            apart: unit_square * (0..count).map(|cable| believed_square(cable..cable + 1)).sum::<f64>(),
-            together: unit_square * believed_square(0..count),
-        };
-        let noise_square = unit_square * noise.iter().map(|noise| noise * noise).sum::<f64>() + believed.apart;
-        let again = bench.judged(base.model.clone());
-        let search = Search::new(bench, again, noise_square, believed);
-        let before = naming.named.iter().map(|named| named.candidate).collect::<Vec<_>>();
-        naming = search.run(&naming.named, &naming.trial.model);
+    for look in 1.. {
+        let before = naming.candidates();
+        naming = search.run(&naming);
         stages.finish_one();
-        if naming.named.iter().all(|named| before.contains(&named.candidate)) {
+        if look == LOOKS || naming.candidates().iter().all(|candidate| before.contains(candidate)) {
             break;
         }
+        search = Search::new(bench, base, &naming.trial.model).ok_or_else(too_short)?;
     }
     Ok(naming)
 }
@@ -201,16 +208,6 @@ fn too_short() -> FitError {
         "the log is too short to tell what the noise of the wrench is".to_owned(),
         "Record a run of 10 s or longer in which the platform moves.",
     )
-}
-
-/// Returns the standard deviation of the white noise in each component of the deviations; `None` if there are too few.
-fn noise_of(bench: &Bench<'_>, trial: &Trial) -> Option<[f64; 6]> {
-    let deviations = bench.deviations(&trial.model);
-    let mut noise = [0.0; 6];
-    for (component, noise) in noise.iter_mut().enumerate() {
-        *noise = bench.white_noise(deviations.iter().map(|deviation| deviation[component]))?;
-    }
-    Some(noise)
 }
 
 impl WrenchDeviation {

@@ -8,7 +8,7 @@ use super::bench::{Bench, Trial, Unknown};
 use super::candidate::Candidate;
 use super::geometry::Geometry;
 use super::naming::{Named, Naming};
-use super::{Edits, GeometryFinding, WrenchDeviation, WrenchDiscovery, noise_of, too_short};
+use super::{Edits, GeometryFinding, WrenchDeviation, WrenchDiscovery, too_short};
 use crate::discover::cable::BELIEVED_RATIO;
 use crate::discover::faults::RecordingFault;
 use crate::discover::figures::curve::curves;
@@ -43,7 +43,7 @@ impl Case<'_, '_> {
     pub fn report(&self, covariance: Option<DMatrix<f64>>) -> Result<WrenchDiscovery, FitError> {
         let Self { bench, base, naming, fitted, .. } = *self;
         let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
-        let noise = noise_of(&plain, fitted).ok_or_else(too_short)?;
+        let noise = plain.noise(&fitted.model).ok_or_else(too_short)?;
         let held_out = bench.used(true);
         let deviation = |trial: &Trial| WrenchDeviation::of(&plain.deviations(&trial.model), &held_out);
         let (before, after) = (deviation(base), deviation(fitted));

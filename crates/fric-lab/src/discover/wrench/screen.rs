@@ -98,22 +98,13 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// The promises beside a model.
-#[derive(Clone, Debug, Default)]
-pub struct Promises {
-    /// Of each candidate, the best first.
-    pub of_candidates: Vec<Promise>,
-    /// Decrease of the whitened sum of squares if each force sensor gets a gain of its own.
-    pub of_gains: f64,
-}
-
 /// Returns what every wanted candidate promises beside a model from its best start.
 pub fn promises(
     bench: &Bench<'_>,
     model: &Model,
     around: &[Around],
     is_wanted: impl Fn(Candidate) -> bool,
-) -> Promises {
+) -> Vec<Promise> {
     let cables: Vec<usize> = (0..bench.records.len()).collect();
     let catalogue = |cable: usize| {
         let wanted =
@@ -158,13 +149,10 @@ pub fn promises(
     };
     for (place, start) in all_starts.iter().enumerate() {
         let candidate = Candidate::Own(start.cable, start.effect);
-        let gain = sums.gain(&[place], &all_starts, Step::Alike);
+        let gain = sums.gain(&[place], &all_starts);
         offer(Promise { candidate, model: beside(model, candidate, &[start]), gain });
     }
-    let mut of_gains = 0.0;
-    // The gains of all sensors together are asked for even if one gain of all is not wanted.
-    let is_asked = |effect: &Effect| *effect == Effect::SensorGain || is_wanted(Candidate::Alike(*effect));
-    for effect in Effect::ALL.iter().copied().filter(is_asked) {
+    for effect in Effect::ALL.iter().copied().filter(|effect| is_wanted(Candidate::Alike(*effect))) {
         let of_cable = |cable: usize| {
             let places = all_starts.iter().enumerate().filter(move |(_, of)| of.cable == cable && of.effect == effect);
             places.map(|(place, _)| place).collect::<Vec<usize>>()
@@ -175,11 +163,8 @@ pub fn promises(
             let places: Vec<usize> = of_cables.iter().filter_map(|of| of.get(start).copied()).collect();
             let from: Vec<&Start> = places.iter().filter_map(|place| all_starts.get(*place)).collect();
             let candidate = Candidate::Alike(effect);
-            let gain = sums.gain(&places, &all_starts, Step::Alike);
+            let gain = sums.gain(&places, &all_starts);
             offer(Promise { candidate, model: beside(model, candidate, &from), gain });
-            if effect == Effect::SensorGain {
-                of_gains = sums.gain(&places, &all_starts, Step::Each);
-            }
         }
     }
     for of in &geometries {
@@ -188,7 +173,7 @@ pub fn promises(
         offer(Promise { candidate, model: beside(model, candidate, &[]), gain });
     }
     promises.sort_by(|one, other| other.gain.total_cmp(&one.gain));
-    Promises { of_candidates: promises, of_gains }
+    promises
 }
 
 fn is_elsewhere(start: &Values, values: &Values) -> bool {
@@ -377,49 +362,31 @@ impl Sums {
         Self { normal, gradient, mixed, scores, squares }
     }
 
-    /// Returns the decrease of the sum of squares by a step from these starts of different cables.
-    fn gain(&self, places: &[usize], starts: &[Start], step: Step) -> f64 {
+    /// Returns the decrease of the sum of squares by the same step from these starts of different cables.
+    fn gain(&self, places: &[usize], starts: &[Start]) -> f64 {
         let of: Vec<&Start> = places.iter().filter_map(|place| starts.get(*place)).collect();
         let Some(width) = of.first().map(|start| start.columns.len()) else { return f64::NAN };
         if of.iter().any(|start| start.columns.len() != width) {
             return f64::NAN;
         }
-        // Where the columns of a start go: all to the same, or those of each start to their own.
-        let first = |member: usize| if step == Step::Each { member * width } else { 0 };
-        let all = if step == Step::Each { of.len() * width } else { width };
-        let mut own = DMatrix::zeros(all, all);
-        let member = |place: usize| places.iter().position(|of| *of == place);
-        for (one, other, sum) in &self.squares {
-            let (Some(row), Some(column)) = (member(*one), member(*other)) else { continue };
-            let mut add = |row, column, sum: &DMatrix<f64>| {
-                let mut part = own.view_mut((first(row), first(column)), (width, width));
-                part += sum;
-            };
-            add(row, column, sum);
+        let mut own = DMatrix::zeros(width, width);
+        for (one, other, sum) in
+            self.squares.iter().filter(|(one, other, _)| [one, other].iter().all(|of| places.contains(of)))
+        {
+            own += sum;
             if one != other {
-                add(column, row, &sum.transpose());
+                own += sum.transpose();
             }
         }
-        let mut mixed = DMatrix::zeros(self.normal.nrows(), all);
-        let mut score = DVector::zeros(all);
-        for (member, start) in of.iter().enumerate() {
+        let mut mixed = DMatrix::zeros(self.normal.nrows(), width);
+        let mut score = DVector::zeros(width);
+        for start in of {
             let (Some(of_cable), Some(scores)) = (self.mixed.get(start.cable), self.scores.get(start.cable)) else {
                 return f64::NAN;
             };
-            let mut columns = mixed.columns_mut(first(member), width);
-            columns += of_cable.rows(start.columns.start, width).transpose();
-            let mut rows = score.rows_mut(first(member), width);
-            rows += scores.rows(start.columns.start, width);
+            mixed += of_cable.rows(start.columns.start, width).transpose();
+            score += scores.rows(start.columns.start, width);
         }
         schur_gain(&own, &mixed, &self.normal, &score, &self.gradient)
     }
-}
-
-/// How the steps from the starts of several cables belong together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Step {
-    /// The same step on all.
-    Alike,
-    /// Each cable makes its own.
-    Each,
 }

@@ -1,68 +1,111 @@
-//! A search that doubts all force sensors at once, for logs that leave something which no single candidate explains. Where every sensor is wrong, the
-//! friction of the given model makes up for that, and no sensor alone explains much.
+//! A start of the search in which every force sensor is in doubt. Where all sensors are wrong, the friction of the given model makes up for that, and no
+//! single candidate explains much.
 
 use fric_core::effects::Effect;
-use fric_core::parameters::OFFSET;
+use fric_core::parameters::Values;
 
 use super::standing::standings;
-use super::{NEAR_ERRORS, Named, Naming};
-use crate::candidates::catalogue::{fitted, has};
+use super::{NEAR_ERRORS, Naming, Search};
+use crate::candidates::catalogue::fitted;
+use crate::discover::cable::BELIEVED_RATIO;
+use crate::discover::naming::STRONG_BIC;
 use crate::discover::naming::evidence::delta_bic;
-use crate::discover::naming::{LEAST_SIZE, STRONG_BIC};
-use crate::discover::wrench::bench::{Bench, Trial};
+use crate::discover::wrench::bench::{Bench, Model, Trial};
 use crate::discover::wrench::candidate::Candidate;
-use crate::discover::wrench::covariance::{geometric_mean_square, whitening};
-
-/// Maximum number of fits of the start, each with the whitening of the one before, until that changes nothing. The covariance of the given model's
-/// deviations makes little of the very directions in which it misses most. With 4 and with 16, the recording of `docs/recordings.md` leads to the same
-/// names, with gains within 0.01 of each other.
-const FITS: usize = 8;
+use crate::discover::wrench::covariance::{geometric_mean_square, reweighted};
+use crate::discover::wrench::geometry::Geometry;
+use crate::replay::WrenchReference;
 
 /// Whether a candidate is the gain or the offset of one force sensor.
 pub fn is_of_one_sensor(candidate: Candidate) -> bool {
     matches!(candidate, Candidate::Own(_, Effect::SensorGain | Effect::SensorOffset))
 }
 
-/// Returns the start of the search: each force sensor has its own gain and its own offset. `None` if there are no deviations. Leaves the whitening of the
-/// last fit but one.
-pub fn sensors_doubted(bench: &mut Bench<'_>, base: &Trial) -> Option<Naming> {
+/// Returns the start of a search in which each force sensor has a gain of its own, fitted with the covariance of its own deviations: that of the given
+/// model makes little of the very directions in which it misses most. `None` if every sensor has one, or if there are no deviations.
+pub fn sensors_doubted(bench: &Bench<'_>, base: &Trial) -> Option<Naming> {
     let mut model = base.model.clone();
-    let mut named = Vec::new();
-    for (cable, (free, values)) in model.free.iter_mut().zip(&model.values).enumerate() {
-        let has_offset = free.iter().any(|of| of.place() == OFFSET);
-        let lacking = [(Effect::SensorGain, false), (Effect::SensorOffset, has_offset)];
-        for (effect, _) in lacking.into_iter().filter(|(effect, is_there)| !is_there && !has(*effect, values)) {
-            free.extend(fitted(effect));
-            named.push(Named { candidate: Candidate::Own(cable, effect), delta_bic: f64::NAN, runner_up: None });
+    let mut gains = Vec::new();
+    for (cable, free) in model.free.iter_mut().enumerate() {
+        let gain = Candidate::Own(cable, Effect::SensorGain);
+        if !gain.is_in(&base.model) {
+            free.extend(fitted(Effect::SensorGain));
+            gains.push(gain);
         }
     }
-    let from_given = bench.with_given_friction(&model);
-    let [from_base, from_given] = [model, from_given].map(|model| bench.fit(&model, NEAR_ERRORS));
-    let mut trial = if from_given.training < from_base.training { from_given } else { from_base };
-    for _ in 1..FITS {
-        bench.whitening = whitening(bench, &trial.model)?;
-        let square = geometric_mean_square(bench, &trial.model, false);
-        trial = bench.fit(&trial.model, NEAR_ERRORS);
-        if geometric_mean_square(bench, &trial.model, false) > (1.0 - LEAST_SIZE) * square {
-            break;
-        }
+    if gains.is_empty() {
+        return None;
     }
-    Some(Naming { trial, named, tried: Vec::new(), is_complete: false })
+    let starts = [bench.with_given_friction(&model), model];
+    let fits = starts.map(|model| fit(bench, &model));
+    let best = fits.into_iter().min_by(|one, other| one.training.total_cmp(&other.training))?;
+    let (trial, whitening) = reweighted(bench, best, fit)?;
+    if let Some((candidates, model)) = by_mass(bench, &trial.model) {
+        let (trial, whitening) = reweighted(bench, fit(bench, &model), fit)?;
+        return Some(Naming::start(trial, &whitening, candidates));
+    }
+    Some(Naming::start(trial, &whitening, gains))
 }
 
-/// Whether the evidence for one outcome beside another is strong and holds on the held-out samples. Each is judged by the covariance of its own deviations
-/// (determinant criterion; G. E. P. Box, N. R. Draper, *The Bayesian estimation of common parameters from several responses*, Biometrika 52, 1965): the
-/// whitening of the one would count little of what the other explains in the directions in which the one leaves much.
-pub fn is_better(bench: &Bench<'_>, one: &Naming, other: &Naming) -> bool {
-    let is_new = |of: &Candidate| !other.named.iter().any(|named| named.candidate == *of);
-    let new: Vec<Candidate> = one.named.iter().map(|named| named.candidate).filter(is_new).collect();
-    let inflation = standings(bench, &one.trial, &new).iter().map(|of| of.inflation).fold(1.0, f64::max);
+/// Returns a model in which the mass is wrong in place of the gains of most sensors, and what it has beyond the given one. By the weight alone a factor in
+/// which the gains agree, as well as friction models are believed to, looks as a wrong mass does, and the mass is the likelier cause. `None` if the wrench
+/// is measured, or if most gains differ.
+fn by_mass(bench: &Bench<'_>, model: &Model) -> Option<(Vec<Candidate>, Model)> {
+    let place = Effect::SensorGain.places().start;
+    let mut gains: Vec<f64> = model.values.iter().map(|values| values[place]).collect();
+    gains.sort_by(f64::total_cmp);
+    let common = *gains.get(gains.len() / 2)?;
+    let differs = |values: &Values| (values[place] / common - 1.0).abs() > BELIEVED_RATIO;
+    let own: Vec<bool> = model.values.iter().map(differs).collect();
+    let own_count = own.iter().filter(|differs| **differs).count();
+    if bench.description.reference != WrenchReference::Mass || 2 * own_count > own.len() {
+        return None;
+    }
+    let mut model = model.clone();
+    let mut candidates = vec![Candidate::Geometry(Geometry::Mass)];
+    for (cable, differs) in own.into_iter().enumerate() {
+        let gain = Candidate::Own(cable, Effect::SensorGain);
+        if differs {
+            model.values[cable][place] /= common;
+            candidates.push(gain);
+        } else {
+            gain.remove_from(&mut model);
+        }
+    }
+    model.changes.insert(Geometry::Mass, vec![0.0; Geometry::Mass.count()]);
+    Some((candidates, model))
+}
+
+impl Search<'_> {
+    /// Whether another start is better than the model with any single candidate, fitted in the same way.
+    pub fn is_worse_than(&mut self, start: &Naming) -> bool {
+        let singles = self.beside(&[]);
+        singles.into_iter().all(|(candidate, single)| {
+            let is_better = |single: &Trial| is_better(&self.bench, start, single, &[candidate]);
+            is_better(&single) && reweighted(&self.bench, single, fit).is_some_and(|(single, _)| is_better(&single))
+        })
+    }
+}
+
+fn fit(bench: &Bench<'_>, model: &Model) -> Trial {
+    bench.fit(model, NEAR_ERRORS)
+}
+
+/// Whether the evidence for an outcome beside another model with some names is strong and holds on the held-out samples. Each is judged by the covariance of
+/// its own deviations (determinant criterion; G. E. P. Box, N. R. Draper, *The Bayesian estimation of common parameters from several responses*, Biometrika
+/// 52, 1965): the whitening of the one would count little of what the other explains in the directions in which the one leaves much.
+pub fn is_better(bench: &Bench<'_>, outcome: &Naming, other: &Trial, of_other: &[Candidate]) -> bool {
+    let bench = Bench { whitening: outcome.whitening, ..bench.clone() };
+    let mut new = outcome.candidates();
+    new.retain(|candidate| !of_other.contains(candidate));
+    let inflation = standings(&bench, &outcome.trial, &new).iter().map(|of| of.inflation).fold(1.0, f64::max);
+    let models = [&outcome.trial.model, &other.model];
     let ratio = |held_out: bool| {
-        let [one, other] = [one, other].map(|of| geometric_mean_square(bench, &of.trial.model, held_out));
+        let [one, other] = models.map(|model| geometric_mean_square(&bench, model, held_out));
         one / other
     };
-    let [one, other] = [one, other].map(|of| of.trial.model.unknowns().len());
+    let [unknowns, of_other] = models.map(|model| model.unknowns().len());
     #[expect(clippy::cast_precision_loss, reason = "counts")]
-    let (count, more) = (6.0 * bench.count(false) as f64 / inflation, one as f64 - other as f64);
+    let (count, more) = (6.0 * bench.count(false) as f64 / inflation, unknowns as f64 - of_other as f64);
     ratio(true) < 1.0 && delta_bic(count, ratio(false), more) < -STRONG_BIC
 }

@@ -4,25 +4,20 @@ use fric_core::effects::Effect;
 
 use super::fits::scales_all;
 use super::standing::standings;
-use super::{LEAST_ALIKE, LEAST_AWAY, MOST, NEAR_ERRORS, Search, set_of};
+use super::{LEAST_ALIKE, MOST, NEAR_ERRORS, Search, set_of};
 use crate::candidates::catalogue::{fitted, has};
-use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::{LEAST_GAIN, LEAST_SIZE, NEGLIGIBLE, Refusal, STRONG_BIC};
 use crate::discover::wrench::bench::Trial;
 use crate::discover::wrench::candidate::Candidate;
-use crate::discover::wrench::screen::Promises;
 use crate::fit::Parameter;
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// Adds candidates as long as they help, each time the one with the most evidence.
     pub(super) fn enter(&mut self, found: &mut Vec<Candidate>) {
         while found.len() < MOST {
             let trial = self.fit(found);
             if self.excess(&trial) <= NEGLIGIBLE {
                 break;
-            }
-            if self.enter_gains(found) {
-                continue;
             }
             let enough = self.least_gain(&trial);
             let mut entrants = self.beside(found);
@@ -41,32 +36,6 @@ impl Search<'_, '_> {
             found.push(*candidate);
             self.spread(found, *candidate);
         }
-    }
-
-    /// Adds a gain of its own for each force sensor, if these together promise more evidence than any single candidate and at least [`LEAST_ALIKE`] sensors
-    /// need theirs. Returns whether it did.
-    fn enter_gains(&mut self, found: &mut Vec<Candidate>) -> bool {
-        let each: Vec<Candidate> =
-            (0..self.bench.records.len()).map(|cable| Candidate::Own(cable, Effect::SensorGain)).collect();
-        let is_gain = |of: &Candidate| of.effect() == Some(Effect::SensorGain);
-        let is_open = each.iter().all(|of| !self.refused.contains_key(of)) && !found.iter().any(is_gain);
-        if !is_open || found.len() + each.len() > MOST {
-            return false;
-        }
-        let trial = self.fit(found);
-        #[expect(clippy::cast_precision_loss, reason = "counts")]
-        let linear_bic = |gain: f64, parameters: usize| {
-            delta_bic(6.0 * self.bench.count(false) as f64, 1.0 - gain / trial.training, parameters as f64)
-        };
-        let Promises { of_candidates, of_gains } = self.promises(found);
-        let of_candidates = of_candidates.iter().map(|of| linear_bic(of.gain, of.candidate.count()));
-        if linear_bic(*of_gains, each.len()) >= of_candidates.fold(0.0, f64::min) {
-            return false;
-        }
-        let mut model = trial.model.clone();
-        model.free.iter_mut().for_each(|free| free.extend(fitted(Effect::SensorGain)));
-        let apart = self.bench.fit(&model, NEAR_ERRORS);
-        self.enters(found, found.clone(), each, apart, LEAST_ALIKE)
     }
 
     /// Returns the decrease of the held-out squares that a candidate needs to enter.
@@ -112,7 +81,7 @@ impl Search<'_, '_> {
         }
         let Some((each, apart)) = self.apart(found, effect) else { return };
         let others: Vec<Candidate> = found.iter().copied().filter(|of| of.effect() != Some(effect)).collect();
-        if self.enters(found, others, each, apart, 0) && matches!(candidate, Candidate::Alike(_)) {
+        if self.enters(found, others, each, apart) && matches!(candidate, Candidate::Alike(_)) {
             self.refused.insert(candidate, Refusal::Unsteady("cable"));
         }
     }
@@ -121,7 +90,7 @@ impl Search<'_, '_> {
     /// the effect promises nothing on some cable.
     pub(super) fn apart(&mut self, found: &[Candidate], effect: Effect) -> Option<(Vec<Candidate>, Trial)> {
         let mut model = self.fit(found).model;
-        if scales_all(self.bench, &model, Candidate::Alike(effect)) {
+        if scales_all(&self.bench, &model, Candidate::Alike(effect)) {
             return None;
         }
         let others: Vec<Candidate> = found.iter().copied().filter(|of| of.effect() != Some(effect)).collect();
@@ -129,12 +98,7 @@ impl Search<'_, '_> {
         let each: Vec<Candidate> = (0..self.bench.records.len()).map(|cable| Candidate::Own(cable, effect)).collect();
         for (cable, of_cable) in each.iter().enumerate() {
             if !has(effect, &model.values[cable]) {
-                let promise = self
-                    .promises(&others)
-                    .of_candidates
-                    .iter()
-                    .find(|promise| promise.candidate == *of_cable)
-                    .cloned()?;
+                let promise = self.promises(&others).iter().find(|promise| promise.candidate == *of_cable).cloned()?;
                 for place in Parameter::of(effect).map(|of| of.place()) {
                     model.values[cable][place] = promise.model.values[cable][place];
                 }
@@ -146,23 +110,19 @@ impl Search<'_, '_> {
         Some((each, self.bench.fit(&model, NEAR_ERRORS)))
     }
 
-    /// Puts effects of each cable in the place of others if the evidence for the model with them is strong, and at least `needed` of the effects are
-    /// significant. Returns whether it did.
+    /// Puts effects of each cable in the place of others if the evidence for the model with them is strong. Returns whether it did.
     fn enters(
         &mut self,
         found: &mut Vec<Candidate>,
         others: Vec<Candidate>,
         each: Vec<Candidate>,
         apart: Trial,
-        needed: usize,
     ) -> bool {
         let trial = self.fit(found);
         let more = apart.model.unknowns().len().saturating_sub(trial.model.unknowns().len());
-        let standings = standings(self.bench, &apart, &each);
+        let standings = standings(&self.bench, &apart, &each);
         let inflation = standings.iter().map(|standing| standing.inflation).fold(1.0, f64::max);
-        let enters = apart.held_out < trial.held_out
-            && self.delta_bic(&trial, &apart, more, inflation) < -STRONG_BIC
-            && standings.iter().filter(|standing| standing.away >= LEAST_AWAY).count() >= needed;
+        let enters = apart.held_out < trial.held_out && self.delta_bic(&trial, &apart, more, inflation) < -STRONG_BIC;
         if enters {
             *found = others;
             found.extend(each);

@@ -10,7 +10,7 @@ use crate::discover::wrench::geometry::Geometry;
 /// The parameter that the weight cannot tell from a wrong mass.
 const GAIN: &str = "sensor_gain.gain";
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// Replaces each name by the best other candidate if that one is better. Returns whether a name was replaced.
     pub(super) fn exchange(&mut self, found: &mut [Candidate]) -> bool {
         let mut is_changed = false;
@@ -74,7 +74,7 @@ impl Search<'_, '_> {
         tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));
         // If every sensor has a gain of its own, the weight does not show the mass.
         let mass = Candidate::Geometry(Geometry::Mass);
-        if scales_all(self.bench, &trial.model, mass) {
+        if scales_all(&self.bench, &trial.model, mass) {
             tried.push(Tried { candidate: mass, delta_bic: 0.0, refusal: Refusal::Open(GAIN) });
         }
         tried

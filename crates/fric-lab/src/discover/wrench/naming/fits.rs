@@ -15,7 +15,7 @@ use crate::discover::naming::justification::is_at_end;
 use crate::discover::wrench::bench::{Bench, Model, Trial};
 use crate::discover::wrench::candidate::Candidate;
 use crate::discover::wrench::geometry::Geometry;
-use crate::discover::wrench::screen::{Promise, Promises, promises};
+use crate::discover::wrench::screen::{Promise, promises};
 use crate::effects::{self, Around};
 use crate::replay::WrenchReference;
 
@@ -23,7 +23,7 @@ use crate::replay::WrenchReference;
 const FITTED: usize = 6;
 const FITTED_OF_KIND: usize = 2;
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// Returns the model with these candidates. A new set is fitted from the best known model with one candidate more.
     pub(super) fn fit(&mut self, found: &[Candidate]) -> Trial {
         let set = set_of(found);
@@ -52,7 +52,7 @@ impl Search<'_, '_> {
 
     /// Returns the models with one more of the most promising candidates, without those that were set aside.
     pub(super) fn beside(&mut self, found: &[Candidate]) -> Vec<(Candidate, Trial)> {
-        let all: Vec<Candidate> = self.promises(found).of_candidates.iter().map(|promise| promise.candidate).collect();
+        let all: Vec<Candidate> = self.promises(found).iter().map(|promise| promise.candidate).collect();
         let mut of_kinds: BTreeMap<&str, usize> = BTreeMap::new();
         let is_first = |candidate: &Candidate| {
             let count = of_kinds.entry(candidate.kind()).or_default();
@@ -70,8 +70,7 @@ impl Search<'_, '_> {
         let unknown: Vec<Candidate> =
             candidates.iter().copied().filter(|candidate| !self.fits.contains_key(&with(candidate))).collect();
         if !unknown.is_empty() {
-            let promises =
-                self.promises(found).of_candidates.iter().filter(|promise| unknown.contains(&promise.candidate));
+            let promises = self.promises(found).iter().filter(|promise| unknown.contains(&promise.candidate));
             let new: Vec<Promise> = promises.cloned().collect();
             let fit = |promise: &Promise| {
                 let mut trial = self.bench.fit(&promise.model, NEAR_ERRORS);
@@ -101,7 +100,7 @@ impl Search<'_, '_> {
     }
 
     /// Returns what candidates promise beside a model, the best first; without those that promise nothing.
-    pub(super) fn promises(&mut self, found: &[Candidate]) -> &Promises {
+    pub(super) fn promises(&mut self, found: &[Candidate]) -> &[Promise] {
         let set = set_of(found);
         if !self.promised.contains_key(&set) {
             let trial = self.fit(found);
@@ -120,10 +119,10 @@ impl Search<'_, '_> {
                 !candidate.effect().is_some_and(Effect::is_second)
                     && !candidate.is_in(model)
                     && Some(candidate) != unlikely
-                    && !scales_all(self.bench, model, candidate)
+                    && !scales_all(&self.bench, model, candidate)
             };
-            let mut all = promises(self.bench, model, &around, is_wanted);
-            all.of_candidates.retain(|promise| promise.gain > 0.0);
+            let mut all = promises(&self.bench, model, &around, is_wanted);
+            all.retain(|promise| promise.gain > 0.0);
             self.promised.insert(set.clone(), all);
         }
         self.promised.entry(set).or_default()
@@ -202,7 +201,7 @@ impl Search<'_, '_> {
 
     /// Returns the factor by which memory in the deviations weakens the evidence for a candidate of a model.
     pub(super) fn inflation(&self, candidate: Candidate, trial: &Trial) -> f64 {
-        standings(self.bench, trial, &[candidate]).first().map_or(f64::INFINITY, |standing| standing.inflation)
+        standings(&self.bench, trial, &[candidate]).first().map_or(f64::INFINITY, |standing| standing.inflation)
     }
 }
 

@@ -11,14 +11,14 @@ use crate::discover::naming::{LEAST_SIZE, Refusal, STRONG_BIC};
 use crate::discover::wrench::bench::Trial;
 use crate::discover::wrench::candidate::Candidate;
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// Sets aside names that cannot stay, the least significant first, and returns the others with their evidence. Where several sensors are doubted, these
     /// come last: what entered beside them may make up for some of their errors.
     pub(super) fn leave(&mut self, found: &mut Vec<Candidate>) -> Vec<Named> {
         loop {
             let trial = self.fit(found);
             let mut weakest_first: Vec<(Standing, Candidate)> =
-                standings(self.bench, &trial, found).into_iter().zip(found.iter().copied()).collect();
+                standings(&self.bench, &trial, found).into_iter().zip(found.iter().copied()).collect();
             let are_doubted = found.iter().filter(|of| is_of_one_sensor(**of)).count() >= LEAST_ALIKE;
             weakest_first.sort_by(|(one, of), (other, beside)| {
                 let [one_late, other_late] = [of, beside].map(|of| are_doubted && is_of_one_sensor(*of));
@@ -80,7 +80,7 @@ impl Search<'_, '_> {
         let Some((_, apart)) = self.apart(found, effect) else { return false };
         let least_square = (LEAST_SIZE * self.noise_square).max(self.believed.apart);
         trial.held_out - apart.held_out > self.held_out_squares(least_square)
-            && disagreement(self.bench, &apart, effect) > LEAST_AWAY
+            && disagreement(&self.bench, &apart, effect) > LEAST_AWAY
     }
 
     /// Returns the decrease of the squares over the held-out blocks except the one in which it is greatest, in variances of the noise.

@@ -3,16 +3,14 @@
 //! The search works in rounds:
 //!
 //! 1. *Enter.* Candidates enter one after the other, each time the one with the most evidence on the training samples that also helps on the held-out
-//!    samples. If a linear step with a gain of its own for each force sensor promises more evidence than any single candidate, the gains enter all at
-//!    once: where every sensor is wrong, the friction has made up for that, and no sensor alone explains much. Several cables with the same effect
-//!    become one effect with the same parameters if that explains as much, and the other way round.
+//!    samples. Several cables with the same effect become one effect with the same parameters if that explains as much, and the other way round.
 //! 2. *Leave.* A name stays if the evidence for it is strong, also outside the block in which it helps most; it is large enough to matter; it exceeds
 //!    what robots without it show; its parameters keep clear of their bounds; and cables that have it alike agree in it. The least significant name that
 //!    cannot stay is set aside, and does not return in this search.
 //! 3. *Exchange.* Each name is compared with the best other candidate in its place.
 //!
-//! The search ends if nothing changes, and in any case after [`ROUNDS`] rounds of at most [`MOST`] names. If something is left then, another one begins
-//! with all force sensors in doubt.
+//! The search ends if nothing changes, and in any case after [`ROUNDS`] rounds of at most [`MOST`] names. It begins without a name or, where that is better
+//! than any single name, with all force sensors in doubt.
 
 mod doubt;
 mod entry;
@@ -23,11 +21,15 @@ mod standing;
 
 use std::collections::BTreeMap;
 
+use nalgebra::Matrix6;
+
 use self::standing::standings;
 use super::bench::{Bench, Model, Trial};
 use super::candidate::Candidate;
+use super::covariance::whitening;
 use super::geometry::Geometry;
-use super::screen::Promises;
+use super::screen::Promise;
+use crate::discover::cable::BELIEVED_RATIO;
 use crate::discover::naming::Refusal;
 use crate::discover::rest::WORTH;
 
@@ -41,7 +43,7 @@ const ROUNDS: usize = 6;
 const NEAR_ERRORS: f64 = 0.5;
 /// The parameters of a name together are at least this many standard errors away from their neutral values.
 const LEAST_AWAY: f64 = 4.0;
-/// Minimum number of cables with the same effect that may become one effect of all cables, or that let the sensors of all be doubted.
+/// Minimum number of cables with the same effect that may become one effect of all cables, and of sensors in doubt that are judged together.
 const LEAST_ALIKE: usize = 3;
 
 /// A name with its evidence.
@@ -67,6 +69,8 @@ pub struct Tried {
 pub struct Naming {
     /// The model with all names.
     pub trial: Trial,
+    /// The whitening with which it was fitted.
+    pub whitening: Matrix6<f64>,
     pub named: Vec<Named>,
     /// Candidates that help this model but do not suffice, the best first.
     pub tried: Vec<Tried>,
@@ -75,15 +79,32 @@ pub struct Naming {
 }
 
 impl Naming {
-    /// Returns the model as `fit` fits it, and drops the names that are no longer significant there.
-    pub fn confirmed(&mut self, bench: &Bench<'_>, fit: impl Fn(&Model) -> Trial) -> Trial {
+    /// Returns the start of a search that begins with some names.
+    pub fn start(trial: Trial, whitening: &Matrix6<f64>, candidates: Vec<Candidate>) -> Self {
+        let named = |candidate| Named { candidate, delta_bic: f64::NAN, runner_up: None };
+        let named = candidates.into_iter().map(named).collect();
+        Self { trial, whitening: *whitening, named, tried: Vec::new(), is_complete: false }
+    }
+
+    /// Returns what is named.
+    pub fn candidates(&self) -> Vec<Candidate> {
+        self.named.iter().map(|named| named.candidate).collect()
+    }
+
+    /// Returns the model as `fit` fits it, with its whitening, and drops the names that are no longer significant there; `None` if there are no deviations.
+    pub fn confirmed(
+        &mut self,
+        bench: &Bench<'_>,
+        fit: impl Fn(&Model) -> Option<(Trial, Matrix6<f64>)>,
+    ) -> Option<(Trial, Matrix6<f64>)> {
         loop {
-            let fitted = fit(&self.trial.model);
-            let found: Vec<Candidate> = self.named.iter().map(|named| named.candidate).collect();
-            let all = standings(bench, &fitted, &found).into_iter().zip(&found);
+            let (fitted, whitening) = fit(&self.trial.model)?;
+            let bench = Bench { whitening, ..bench.clone() };
+            let found = self.candidates();
+            let all = standings(&bench, &fitted, &found).into_iter().zip(&found);
             let weakest = all.min_by(|(one, _), (other, _)| one.away.total_cmp(&other.away));
             let Some((_, candidate)) = weakest.filter(|(standing, _)| standing.away < LEAST_AWAY) else {
-                return fitted;
+                return Some((fitted, whitening));
             };
             candidate.remove_from(&mut self.trial.model);
             self.named.retain(|named| named.candidate != *candidate);
@@ -100,11 +121,11 @@ impl Naming {
 }
 
 /// Mean squared whitened deviation of a sample that friction models make which are not exact.
-pub struct Believed {
+struct Believed {
     /// If the errors of the cables are independent.
-    pub apart: f64,
+    apart: f64,
     /// If they add up, as those of a law that all cables have alike.
-    pub together: f64,
+    together: f64,
 }
 
 impl Believed {
@@ -118,38 +139,50 @@ impl Believed {
 }
 
 /// A search. Every set of candidates is fitted and screened once.
-pub struct Search<'b, 'a> {
-    bench: &'b Bench<'a>,
+pub struct Search<'a> {
+    /// All cables with their samples, and the whitening of the model from which the search starts.
+    bench: Bench<'a>,
     /// Mean squared whitened deviation of a sample by noise, and by independent errors of the cables' friction models.
     noise_square: f64,
     believed: Believed,
     /// Fitted models by the candidates in them, in order.
     fits: BTreeMap<Vec<Candidate>, Trial>,
     /// What further candidates promise beside such a model.
-    promised: BTreeMap<Vec<Candidate>, Promises>,
+    promised: BTreeMap<Vec<Candidate>, Vec<Promise>>,
     /// Candidates that were set aside and the reasons.
     refused: BTreeMap<Candidate, Refusal>,
 }
 
-impl<'b, 'a> Search<'b, 'a> {
-    /// Starts a search from the fitted given model.
-    pub fn new(bench: &'b Bench<'a>, base: Trial, noise_square: f64, believed: Believed) -> Self {
-        Self {
+impl<'a> Search<'a> {
+    /// Prepares a search beside the fitted given model, with the covariance and the noise of another model's deviations; `None` if there are too few
+    /// deviations.
+    pub fn new(bench: &Bench<'a>, base: &Trial, model: &Model) -> Option<Self> {
+        let bench = Bench { whitening: whitening(bench, model)?, ..bench.clone() };
+        let noise = bench.noise(model)?;
+        let believed_square = |cables| bench.believed_square(model, BELIEVED_RATIO, cables);
+        let count = bench.records.len();
+        let unit_square = bench.unit_square(model);
+        let believed = Believed {
+            apart: unit_square * (0..count).map(|cable| believed_square(cable..cable + 1)).sum::<f64>(),
+            together: unit_square * believed_square(0..count),
+        };
+        let noise_square = unit_square * noise.iter().map(|noise| noise * noise).sum::<f64>() + believed.apart;
+        let base = bench.judged(base.model.clone());
+        Some(Self {
             bench,
             noise_square,
             believed,
             fits: BTreeMap::from([(Vec::new(), base)]),
             promised: BTreeMap::new(),
             refused: BTreeMap::new(),
-        }
+        })
     }
 
-    /// Names what the model lacks. The names of a search before are in the model from the start, with the parameters of `model`, and must justify
-    /// themselves like the others.
-    pub fn run(mut self, before: &[Named], model: &Model) -> Naming {
-        let mut found: Vec<Candidate> = before.iter().map(|named| named.candidate).collect();
+    /// Names what the model lacks. The names of a search before are in the model from the start, and must justify themselves like the others.
+    pub fn run(mut self, before: &Naming) -> Naming {
+        let mut found = before.candidates();
         if !found.is_empty() {
-            self.fits.insert(set_of(&found), self.bench.fit(model, NEAR_ERRORS));
+            self.fits.insert(set_of(&found), self.bench.fit(&before.trial.model, NEAR_ERRORS));
         }
         for _ in 0..ROUNDS {
             let refused = self.refused.len();
@@ -170,7 +203,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let tried = self.tried(&found);
         let trial = self.fit(&found);
         let is_complete = self.excess(&trial) <= WORTH;
-        Naming { trial, named, tried, is_complete }
+        Naming { trial, whitening: self.bench.whitening, named, tried, is_complete }
     }
 }
 
