@@ -98,6 +98,21 @@ fn a_wrong_mass_is_no_friction() {
     assert!((found.geometry[0].numbers[0] - 0.41).abs() < 0.002, "{:?}", found.geometry);
 }
 
+/// The gains of all sensors together would explain both.
+#[test]
+fn a_wrong_mass_is_told_beside_a_wrong_gain() {
+    let truth = robot(|text| {
+        text.replacen("\nfriction =", "\neffects = [{ kind = \"sensor_gain\", gain = 1.06 }]\nfriction =", 1)
+    });
+    let heavy = robot(|text| text.replace("mass_kg = 0.41", "mass_kg = 0.45"));
+    let found = look(&truth, &heavy, 9, true);
+    assert_eq!(found.geometry.iter().map(|of| of.geometry).collect::<Vec<_>>(), [Geometry::Mass]);
+    let mut expected = vec![Vec::new(); names(&found).len()];
+    expected[0] = vec![Effect::SensorGain];
+    assert_eq!((names(&found), found.verdict), (expected, Verdict::Extended));
+    assert!((found.geometry[0].numbers[0] - 0.41).abs() < 0.002, "{:?}", found.geometry);
+}
+
 /// A sine of 0.2 N and 50 Hz, cycle by cycle at 250 Hz.
 fn sine_n() -> impl Iterator<Item = f64> {
     (0..).map(|cycle| 0.2 * (core::f64::consts::TAU * 50.0 * f64::from(cycle) * 0.004 + 0.3).sin())

@@ -25,8 +25,9 @@ pub fn reweighted(
         let ratio = square / geometric_mean_square(&bench, &trial.model, false);
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let count = bench.count(false) as f64;
-        // Twice the increase of the logarithm of the likelihood.
-        if 6.0 * count * ratio.ln() < 1.0 {
+        // Twice the increase of the logarithm of the likelihood; NaN ends the fits too.
+        let is_likelier = 6.0 * count * ratio.ln() >= 1.0;
+        if !is_likelier {
             break;
         }
     }
@@ -65,7 +66,7 @@ pub fn geometric_mean_square(bench: &Bench<'_>, model: &Model, held_out: bool) -
     bench.unit_square(model) * geometric_mean(&covariance, directions)
 }
 
-/// Returns the geometric mean of the greatest principal variances, so many as there are directions.
+/// Returns the geometric mean of the `directions` greatest principal variances.
 fn geometric_mean(covariance: &Matrix6<f64>, directions: usize) -> f64 {
     let mut squares: Vec<f64> = covariance.symmetric_eigenvalues().iter().copied().collect();
     squares.sort_by(|one, other| other.total_cmp(one));

@@ -129,7 +129,9 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     let base = bench.fit(&given, AT_MINIMUM);
     let nothing = Naming::start(base.clone(), &bench.whitening, Vec::new());
     let mut search = Search::new(&bench, &base, &base.model).ok_or_else(too_short)?;
-    let (start, other_start) = match naming::sensors_doubted(&bench, &base) {
+    let doubted = if search.is_explained() { None } else { naming::sensors_doubted(&bench, &base) };
+    // The better start first, and the other one if that leaves something.
+    let (start, other_start) = match doubted {
         Some(doubted) if search.is_worse_than(&doubted) => {
             search = Search::new(&bench, &base, &doubted.trial.model).ok_or_else(too_short)?;
             (doubted, Some(nothing))

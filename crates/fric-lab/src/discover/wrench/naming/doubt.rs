@@ -5,24 +5,28 @@ use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 
 use super::standing::standings;
-use super::{NEAR_ERRORS, Naming, Search};
+use super::{LEAST_ALIKE, MOST, NEAR_ERRORS, Naming, Search};
 use crate::candidates::catalogue::fitted;
-use crate::discover::cable::BELIEVED_RATIO;
-use crate::discover::naming::STRONG_BIC;
 use crate::discover::naming::evidence::delta_bic;
+use crate::discover::naming::{NEGLIGIBLE, STRONG_BIC};
 use crate::discover::wrench::bench::{Bench, Model, Trial};
 use crate::discover::wrench::candidate::Candidate;
 use crate::discover::wrench::covariance::{geometric_mean_square, reweighted};
 use crate::discover::wrench::geometry::Geometry;
 use crate::replay::WrenchReference;
 
+/// Gains that differ by less than this fraction agree. Under a wrong mass the gains of simulated robots agree to a few thousandths; with twice as much, gains
+/// that are off by up to 3 % would count as one factor.
+const ALIKE_RATIO: f64 = 0.01;
+
 /// Whether a candidate is the gain or the offset of one force sensor.
 pub fn is_of_one_sensor(candidate: Candidate) -> bool {
     matches!(candidate, Candidate::Own(_, Effect::SensorGain | Effect::SensorOffset))
 }
 
-/// Returns the start of a search in which each force sensor has a gain of its own, fitted with the covariance of its own deviations: that of the given
-/// model makes little of the very directions in which it misses most. `None` if every sensor has one, or if there are no deviations.
+/// Returns the start of a search in which each force sensor that has none gets a gain of its own, or in which the mass is wrong in place of gains that agree.
+/// It is fitted with the covariance of its own deviations: that of the given model makes little of the very directions in which it misses most. `None` if
+/// every sensor has a gain, if there are more than a search names, or if there are no deviations.
 pub fn sensors_doubted(bench: &Bench<'_>, base: &Trial) -> Option<Naming> {
     let mut model = base.model.clone();
     let mut gains = Vec::new();
@@ -33,32 +37,33 @@ pub fn sensors_doubted(bench: &Bench<'_>, base: &Trial) -> Option<Naming> {
             gains.push(gain);
         }
     }
-    if gains.is_empty() {
+    if gains.is_empty() || gains.len() > MOST {
         return None;
     }
+    let are_all_doubted = gains.len() == bench.records.len();
     let starts = [bench.with_given_friction(&model), model];
     let fits = starts.map(|model| fit(bench, &model));
     let best = fits.into_iter().min_by(|one, other| one.training.total_cmp(&other.training))?;
     let (trial, whitening) = reweighted(bench, best, fit)?;
-    if let Some((candidates, model)) = by_mass(bench, &trial.model) {
-        let (trial, whitening) = reweighted(bench, fit(bench, &model), fit)?;
+    let is_by_mass = bench.description.reference == WrenchReference::Mass && are_all_doubted;
+    if let Some((candidates, model)) = is_by_mass.then(|| with_mass(&trial.model)).flatten() {
+        let (trial, whitening) = reweighted(bench, bench.judged(model), fit)?;
         return Some(Naming::start(trial, &whitening, candidates));
     }
     Some(Naming::start(trial, &whitening, gains))
 }
 
-/// Returns a model in which the mass is wrong in place of the gains of most sensors, and what it has beyond the given one. By the weight alone a factor in
-/// which the gains agree, as well as friction models are believed to, looks as a wrong mass does, and the mass is the likelier cause. `None` if the wrench
-/// is measured, or if most gains differ.
-fn by_mass(bench: &Bench<'_>, model: &Model) -> Option<(Vec<Candidate>, Model)> {
+/// Returns the model with a wrong mass in place of the gains that agree, and its candidates. By the weight alone, a factor in which the sensors agree cannot
+/// be told from a wrong mass, which is the likelier cause. `None` if half of the gains differ, or so many that the sensors are wrong.
+fn with_mass(model: &Model) -> Option<(Vec<Candidate>, Model)> {
     let place = Effect::SensorGain.places().start;
     let mut gains: Vec<f64> = model.values.iter().map(|values| values[place]).collect();
     gains.sort_by(f64::total_cmp);
     let common = *gains.get(gains.len() / 2)?;
-    let differs = |values: &Values| (values[place] / common - 1.0).abs() > BELIEVED_RATIO;
+    let differs = |values: &Values| (values[place] / common - 1.0).abs() > ALIKE_RATIO;
     let own: Vec<bool> = model.values.iter().map(differs).collect();
     let own_count = own.iter().filter(|differs| **differs).count();
-    if bench.description.reference != WrenchReference::Mass || 2 * own_count > own.len() {
+    if own_count >= LEAST_ALIKE || 2 * own_count >= own.len() {
         return None;
     }
     let mut model = model.clone();
@@ -77,13 +82,21 @@ fn by_mass(bench: &Bench<'_>, model: &Model) -> Option<(Vec<Candidate>, Model)> 
 }
 
 impl Search<'_> {
-    /// Whether another start is better than the model with any single candidate, fitted in the same way.
+    /// Whether another start is better than the given model, and than the model with any single candidate, fitted in the same way.
     pub fn is_worse_than(&mut self, start: &Naming) -> bool {
+        let base = self.fit(&[]);
         let singles = self.beside(&[]);
-        singles.into_iter().all(|(candidate, single)| {
-            let is_better = |single: &Trial| is_better(&self.bench, start, single, &[candidate]);
-            is_better(&single) && reweighted(&self.bench, single, fit).is_some_and(|(single, _)| is_better(&single))
-        })
+        is_better(&self.bench, start, &base, &[])
+            && singles.into_iter().all(|(candidate, single)| {
+                let is_better = |single: &Trial| is_better(&self.bench, start, single, &[candidate]);
+                is_better(&single) && reweighted(&self.bench, single, fit).is_some_and(|(single, _)| is_better(&single))
+            })
+    }
+
+    /// Whether the given model leaves no more than noise.
+    pub fn is_explained(&mut self) -> bool {
+        let base = self.fit(&[]);
+        self.excess(&base) <= NEGLIGIBLE
     }
 }
 
@@ -104,8 +117,8 @@ pub fn is_better(bench: &Bench<'_>, outcome: &Naming, other: &Trial, of_other: &
         let [one, other] = models.map(|model| geometric_mean_square(&bench, model, held_out));
         one / other
     };
-    let [unknowns, of_other] = models.map(|model| model.unknowns().len());
+    let [unknowns, other_unknowns] = models.map(|model| model.unknowns().len());
     #[expect(clippy::cast_precision_loss, reason = "counts")]
-    let (count, more) = (6.0 * bench.count(false) as f64 / inflation, unknowns as f64 - of_other as f64);
+    let (count, more) = (6.0 * bench.count(false) as f64 / inflation, unknowns as f64 - other_unknowns as f64);
     ratio(true) < 1.0 && delta_bic(count, ratio(false), more) < -STRONG_BIC
 }
