@@ -100,32 +100,31 @@ impl AllCables<'_> {
     }
 }
 
-/// Runs the discovery on a cable with its reference at its correct time: first as determined by the given model, then by the model with the effects
-/// that were missing.
+/// Runs the discovery on a cable with its reference at its correct time: first as determined by the given model, then, if effects were missing, by the
+/// model with these. A missing effect may have looked like a late reference, or hidden one.
 fn discover_retimed(
     record: &CableRecord<'_>,
     task: &Task<'_>,
 ) -> Result<(CableDiscovery, Option<RecordingFault>), StoreError> {
     let stop = task.progress.stop_flag();
-    let with = |retimed: &Retimed| {
-        cable::discover_cable(&record.with_interpolated(&retimed.references_n, retimed.noise_reach), task)
+    let found_with = |retimed: Option<Retimed>| {
+        let found = match &retimed {
+            Some(of) => cable::discover_cable(&record.with_interpolated(&of.references_n, of.noise_reach), task)?,
+            None => cable::discover_cable(record, task)?,
+        };
+        Ok((found, retimed.map(|retimed| retimed.fault)))
     };
-    let Some(retimed) = faults::timing::retimed(record, stop) else {
-        return Ok((cable::discover_cable(record, task)?, None));
-    };
-    let found = with(&retimed)?;
-    let fault = retimed.fault;
-    drop(retimed.references_n);
+    let (found, fault) = found_with(faults::timing::retimed(record, stop))?;
     let named = found.findings.iter().any(|finding| finding.effect != Effect::Empirical);
     // A table may represent the late reference itself.
     let values = rest::empirical::without_table(&found.after.values);
     let extended = record.params.with_values(&values).ok().filter(|_| named);
-    let Some(params) = extended else { return Ok((found, Some(fault))) };
-    // A missing effect in the given model may have looked like a late reference.
-    Ok(match faults::timing::retimed(&record.with_params(&params), stop) {
-        Some(retimed) => (with(&retimed)?, Some(retimed.fault)),
-        None => (cable::discover_cable(record, task)?, None),
-    })
+    let Some(params) = extended else { return Ok((found, fault)) };
+    let retimed = faults::timing::retimed(&record.with_params(&params), stop);
+    if retimed.is_none() && fault.is_none() {
+        return Ok((found, None));
+    }
+    found_with(retimed)
 }
 
 /// The reason why a discovery says nothing.

@@ -262,6 +262,21 @@ fn a_clock_that_runs_otherwise_is_told() {
     assert_eq!(found.verdict, Verdict::Complete, "{:?}", found.unexplained);
 }
 
+/// What is missing from the given model hides the time error until it has its name.
+#[test]
+fn a_clock_that_runs_otherwise_is_told_beside_an_effect() {
+    let (mut points, truth) = points_of(&Case { seed: 70_023, ..Case::hiding(Group::Single, &[Effect::PulleyDefect]) });
+    with_late_reference(&mut points, |cycle| 4.0 + 4e-4 * f64::from(u32::try_from(cycle).unwrap()));
+    let found = look(&[&points], &truth);
+    let kinds: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+    assert_eq!((kinds, found.verdict), (vec![Effect::PulleyDefect], Verdict::Extended), "{:?}", found.tried);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    assert_eq!(fault.fault, Fault::ClockSkew);
+    let told = |key: &str| fault.parameters.iter().find(|(of, _)| *of == key).unwrap().1;
+    assert!((told("skew_ratio") / -4e-4 - 1.0).abs() < 0.05, "{:?}", fault.parameters);
+    assert!((told("delay_s") / 4e-3 - 1.0).abs() < 0.05, "{:?}", fault.parameters);
+}
+
 #[test]
 fn spikes_and_coarse_steps_are_told() {
     let (points, truth) = points_of(&Case { seed: 70_020, ..Case::of(Group::Nothing) });

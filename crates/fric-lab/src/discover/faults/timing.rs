@@ -9,13 +9,16 @@
 
 use std::sync::atomic::AtomicBool;
 
+use fric_core::effects::Effect;
+use fric_core::parameters::OFFSET;
+
 use super::{Fault, RecordingFault};
 use crate::discover::cable::given_to;
 use crate::discover::naming::STRONG_BIC;
 use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::projection::{Columns, Signals, visit_less_projection};
-use crate::discover::workbench::{Trial, Workbench};
-use crate::fit::CableRecord;
+use crate::discover::workbench::{Model, Trial, Workbench};
+use crate::fit::{CableRecord, Parameter};
 use crate::samples::interpolated::measured;
 use crate::samples::noise::{VARIANCE_ERROR, white_noise_apart};
 use crate::samples::split::{Block, split};
@@ -110,6 +113,7 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
     }
     let (blocks, measured) = (split(record), measured(record));
     let (counts, start) = given_to(record, stop)?;
+    let start = with_zero(record, start);
     let case = Case { record: *record, counts: &counts, blocks: &blocks, measured: &measured, stop };
     let as_it_is = case.bench(record.references_n).try_one(&start);
     if !case.may_gain(record.references_n, &as_it_is)? {
@@ -122,6 +126,7 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
         return None;
     }
     let (used, again) = given_to(&record.with_references(&near.references_n), stop)?;
+    let again = with_zero(record, again);
     let is_same = used == counts && again.free == start.free;
     let case = Case { counts: &used, ..case };
     let as_it_is = if is_same { as_it_is } else { case.bench(record.references_n).try_one(&again) };
@@ -161,6 +166,16 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
     }
     let fault = fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)]);
     Some(Retimed { references_n: shifted.references_n, noise_reach: LINE_REACH, fault })
+}
+
+/// Adds the offset to the free parameters if no zero is free, of the whole recording or of each log. A wrong zero leaves a residual that lasts, which would
+/// weaken the evidence for a late reference.
+fn with_zero(record: &CableRecord<'_>, mut model: Model) -> Model {
+    let is_zero = |of: &Parameter| of.place() == OFFSET || of.effect() == Some(Effect::SensorOffset);
+    if record.per_log.is_none() && !model.free.iter().any(is_zero) {
+        model.free.extend(Parameter::all().find(|of| of.place() == OFFSET));
+    }
+    model
 }
 
 /// Whether a fit's residual, N, is correlated with the rate of the reference at all, constantly or growing with time. This check is far cheaper than
