@@ -2,7 +2,7 @@
 //!
 //! Sensor drift is noise. It continues while the cable rests and is spread over the log. A rest is not drift if it changes with the motion or the
 //! load, is a function of a condition, is louder at some times than at others, or is many times the noise. Nor is it if it follows the past of the
-//! load ([`past`]), or is what friction of another law leaves ([`drift`], [`contacts`]).
+//! load ([`past`]) or goes with its rate, or is what friction of another law leaves ([`drift`], [`contacts`]).
 
 pub mod contacts;
 pub mod drift;
@@ -44,7 +44,8 @@ pub fn wander<'e, 'a>(excess: &'e Excess<'a>, places: &[Place]) -> Option<(f64, 
         share > WORTH && share < MOST_WANDER * MOST_WANDER && places.is_empty() && share_of_wave(excess) < MOST_WAVE;
     let drift = if is_wander { Drift::of(excess)? } else { return None };
     let [quick, quick_of_motion] = quick_shares(excess);
-    let slow = (1.0 - quick) * (1.0 - share_of_motion(excess).max(share_of_past(excess)));
+    let of_cable = share_of_motion(excess).max(share_of_rate(excess)).max(share_of_past(excess));
+    let slow = (1.0 - quick) * (1.0 - of_cable);
     let wander = share * (slow + quick * (1.0 - quick_of_motion)) * drift.steady_share();
     (wander > 0.0).then_some((wander, drift))
 }
@@ -88,6 +89,26 @@ fn share_of_motion(excess: &Excess<'_>) -> f64 {
         return with_motion;
     }
     (1.0 - of_quiet.max(0.0) / of_all).clamp(with_motion, 1.0)
+}
+
+/// Returns the fraction of a residual's slow changes that goes with the rate of the load, as what a lag or a delay leaves; zero where this may be chance.
+/// The rate of a window is computed from its neighbours, so that its product with noise or drift of the sensor, which is in both signals, is zero on average.
+fn share_of_rate(excess: &Excess<'_>) -> f64 {
+    let mut sums = Sums::default();
+    let mut without_noise = 0.0;
+    for windows in windows(excess) {
+        for around in windows.windows(4) {
+            let [before, one, next, after] = around else { continue };
+            let change_n = next.mean_n - one.mean_n;
+            let noise = excess.noise_n * excess.noise_n * (1.0 / one.count + 1.0 / next.count);
+            let rate_change_n = 0.5 * (after.load_n - next.load_n - one.load_n + before.load_n);
+            if (change_n * rate_change_n * noise).is_finite() {
+                sums.add(change_n, rate_change_n);
+                without_noise += change_n * change_n - noise;
+            }
+        }
+    }
+    if sums.is_correlated() { (sums.explained() / without_noise.max(sums.explained())).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// Returns the fraction of the excess that changes within windows of [`CHANGE_S`], and the fraction of this that comes with motion. The noise of an
@@ -169,16 +190,39 @@ struct Change {
 
 /// Returns the fraction of a residual's squared changes that correlates with another change; zero where this may be chance.
 fn correlated_share(changes: &[&Change], other: fn(&Change) -> f64) -> f64 {
-    let [mut squares, mut others, mut products, mut count] = [0.0_f64; 4];
+    let mut sums = Sums::default();
     for change in changes {
-        let number = other(change);
-        squares += change.residual_n * change.residual_n;
-        others += number * number;
-        products += change.residual_n * number;
-        count += 1.0;
+        sums.add(change.residual_n, other(change));
     }
-    let share = products * products / (squares * others);
-    if share * count > LEAST_RANKS_APART * LEAST_RANKS_APART { share } else { 0.0 }
+    if sums.is_correlated() { sums.explained() / sums.squares } else { 0.0 }
+}
+
+/// Sums over the changes of a residual and another change.
+#[derive(Default)]
+struct Sums {
+    squares: f64,
+    others: f64,
+    products: f64,
+    count: f64,
+}
+
+impl Sums {
+    fn add(&mut self, change_n: f64, other: f64) {
+        self.squares += change_n * change_n;
+        self.others += other * other;
+        self.products += change_n * other;
+        self.count += 1.0;
+    }
+
+    /// Returns the squares that go with the other change, N².
+    fn explained(&self) -> f64 {
+        self.products * self.products / self.others
+    }
+
+    /// Whether the two correlate by more than chance gives.
+    fn is_correlated(&self) -> bool {
+        self.explained() * self.count > LEAST_RANKS_APART * LEAST_RANKS_APART * self.squares
+    }
 }
 
 /// Returns by how many standard deviations of chance the numbers of the first kind rank below those of the second.
