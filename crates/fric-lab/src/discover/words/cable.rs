@@ -157,7 +157,7 @@ impl DiscoverCableResult {
         let mut text = match (self.verdict, kinds.as_slice()) {
             ("complete", _) if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
             ("complete", _) if self.tried.iter().any(|tried| tried.is_within_noise) => {
-                "With values fitted to the log, the model agrees with it to the noise, as far as so few samples show the noise. \
+                "With values fitted to the log, the model agrees with it to the noise, as far as the log shows what its noise is. \
                  A longer log would tell whether something small is missing."
                     .to_owned()
             }

@@ -122,7 +122,7 @@ impl Refusal {
             Self::Unjudged => "the search ended before it was judged".to_owned(),
             Self::AtBound => "its parameter runs to the end of its range".to_owned(),
             Self::WithinNoise => {
-                "what is left without it is no more than noise, as far as so few samples show the noise".to_owned()
+                "what is left without it is no more than noise, as far as the log shows what its noise is".to_owned()
             }
             Self::Absent => "its interval holds the value at which it does nothing".to_owned(),
             Self::Open(other) => format!("the log cannot tell it from {}", name_of(other)),
@@ -136,7 +136,7 @@ impl Refusal {
                 "a law without a name that goes with the {} explains more, and leaves little for it",
                 condition(signal)
             ),
-            Self::Usual => "it is no more than what robots without it have".to_owned(),
+            Self::Usual => "it is no larger than on a sound robot".to_owned(),
             Self::UsualInstead(usual) => {
                 format!("{} of a size that robots usually have leaves little for it to explain", usual.kind())
             }
