@@ -197,7 +197,7 @@ fn correlated_share(changes: &[&Change], other: fn(&Change) -> f64) -> f64 {
     if sums.is_correlated() { sums.explained() / sums.squares } else { 0.0 }
 }
 
-/// Sums over the changes of a residual and another change.
+/// Sums over the changes of a residual, N, and another change in its own unit.
 #[derive(Default)]
 struct Sums {
     squares: f64,
