@@ -6,7 +6,6 @@
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
 
-use super::ripple::is_period;
 use crate::certainty::assumed::is_assumed;
 use crate::effects;
 use crate::effects::{Around, Periods};
@@ -67,7 +66,7 @@ pub fn has(effect: Effect, values: &Values) -> bool {
 /// Whether a fit varies a parameter once its effect acts, although it has no neutral value from which a candidate could start: the period of a ripple,
 /// and the time in which contacts age at rest.
 pub fn is_fitted_once_it_acts(parameter: &Parameter) -> bool {
-    is_period(parameter) || is_assumed(parameter)
+    parameter.is_period() || is_assumed(parameter)
 }
 
 /// Returns the parameters that a fit varies for an effect.

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use fric_core::effects::Effect;
-use fric_core::effects::ripple::PERIOD_KEY;
 use nalgebra::{Matrix3, Vector3};
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
@@ -26,12 +25,7 @@ const SECTIONS: usize = 14;
 /// Returns the period parameter of an effect that is periodic in the cable's length. It has no neutral value to start from; a scan of the residual
 /// finds it.
 pub fn period_of(effect: Effect) -> Option<Parameter> {
-    Parameter::of(effect).find(is_period)
-}
-
-/// Whether a parameter is the period of a ripple.
-pub fn is_period(parameter: &Parameter) -> bool {
-    parameter.row().key == PERIOD_KEY
+    Parameter::of(effect).find(Parameter::is_period)
 }
 
 /// Returns the periods in the cable's length at which a residual ripples, and the circumference of the pulley whose radius is known, if the cable moves

@@ -8,7 +8,7 @@
 //! No model is perfect: a parameter that changes the force by a thousandth of the friction is not determined, however long the log.
 
 use fric_core::effects::time_delay::DELAY;
-use fric_core::parameters::{MU, OFFSET, VISCOUS};
+use fric_core::parameters::{MU, OFFSET, VISCOUS, Values};
 
 use crate::search::vector::Parameter;
 
@@ -43,7 +43,7 @@ impl Yardstick {
 
     /// Returns the width of an interval as a multiple of the widest one that still determines the parameter; above 1 it is undetermined. `leverage`
     /// is the greatest shift of the parameter per 1 N of model error.
-    pub fn vagueness(&self, parameter: &Parameter, value: f64, standard_error: f64, leverage: f64) -> f64 {
+    pub fn vagueness(&self, parameter: &Parameter, values: &Values, standard_error: f64, leverage: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "at most MAX_PULLEYS")]
         let pulleys = self.pulley_count as f64;
         let negligible = match parameter.place() {
@@ -54,8 +54,7 @@ impl Yardstick {
             _ if parameter.row().unit == "1" => NEGLIGIBLE_RATIO,
             _ => 0.0,
         };
-        let size = if parameter.row().min > 0.0 { value } else { value - parameter.row().neutral };
         let half_width = HALF_INTERVAL * standard_error + BELIEVED_RATIO * self.friction_n * leverage;
-        if half_width.is_finite() { half_width / (0.5 * size.abs()).max(negligible) } else { f64::INFINITY }
+        if half_width.is_finite() { half_width / (0.5 * parameter.size(values)).max(negligible) } else { f64::INFINITY }
     }
 }

@@ -39,12 +39,11 @@ impl Knowledge {
         let (normal, covariance, leverages) = uncertainty(problem, values, None);
         let sticks = yardsticks(problem, values);
         let of = |(place, unknown): (usize, &Unknown)| {
-            let value = values.get(unknown.member).map_or(f64::NAN, |values| values[unknown.parameter.place()]);
             let standard_error = covariance[(place, place)].sqrt();
             let leverage = leverages.get(place).copied().unwrap_or(0.0);
-            sticks
-                .get(unknown.member)
-                .map_or(f64::INFINITY, |stick| stick.vagueness(&unknown.parameter, value, standard_error, leverage))
+            sticks.get(unknown.member).zip(values.get(unknown.member)).map_or(f64::INFINITY, |(stick, values)| {
+                stick.vagueness(&unknown.parameter, values, standard_error, leverage)
+            })
         };
         let unknowns = unknowns(problem);
         let vagueness = unknowns.iter().enumerate().map(of).collect();

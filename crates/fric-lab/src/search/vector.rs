@@ -8,6 +8,7 @@
 use std::fmt;
 
 use fric_core::effects::Effect;
+use fric_core::effects::ripple::PERIOD_KEY;
 use fric_core::effects::time_delay::{DELAY, delay_range_s};
 use fric_core::parameters::{self, FRICTION_COUNT, ParameterRow, Values};
 use fric_core::robot::unknown_name;
@@ -72,6 +73,26 @@ impl Parameter {
     #[must_use]
     pub fn row(&self) -> &'static ParameterRow {
         self.row
+    }
+
+    /// Whether it is the period of a ripple.
+    #[must_use]
+    pub fn is_period(&self) -> bool {
+        self.row.key == PERIOD_KEY
+    }
+
+    /// Returns how far it is from doing nothing, in its unit: from its neutral value, or from 0 if it is always positive. The two components of a ripple
+    /// are as large as the ripple's amplitude, whatever its phase.
+    #[must_use]
+    pub fn size(&self, values: &Values) -> f64 {
+        let distance = |of: &Self| values[of.place] - if of.row.min > 0.0 { 0.0 } else { of.row.neutral };
+        match self.effect {
+            Some(effect) if !self.is_period() && Self::of(effect).any(|of| of.is_period()) => {
+                let components = Self::of(effect).filter(|of| !of.is_period());
+                components.map(|of| distance(&of).powi(2)).sum::<f64>().sqrt()
+            }
+            _ => distance(self).abs(),
+        }
     }
 
     /// Whether it belongs to `friction`.

@@ -77,10 +77,12 @@ pub fn sums_of_logs(problem: &Problem<'_>, values: &Values) -> Option<Vec<Sums>>
 pub enum Measure {
     /// The evidence against the model.
     Evidence,
-    /// The uncertainty of parameters: index among the free ones, the parameter, its value.
+    /// The uncertainty of parameters.
     Knowledge {
-        /// The wanted parameters.
-        wanted: Vec<(usize, Parameter, f64)>,
+        /// The wanted parameters with their indices among the free ones.
+        wanted: Vec<(usize, Parameter)>,
+        /// The values of the model.
+        values: Box<Values>,
         /// The scale of uncertainties that matter.
         yardstick: Yardstick,
     },
@@ -105,12 +107,12 @@ impl Test {
                 let evidence = 0.5 * sums.count * (left / (sums.count.max(1.0) * variance)).ln_1p();
                 evidence / STRONG_BIC
             }
-            Measure::Knowledge { wanted, yardstick } => {
+            Measure::Knowledge { wanted, values, yardstick } => {
                 let Some(inverse) = inverse_of_normal(&sums.matrix) else { return 0.0 };
-                let of = |(place, parameter, value): &(usize, Parameter, f64)| {
+                let of = |(place, parameter): &(usize, Parameter)| {
                     let of_one = inverse[(*place, *place)];
                     let leverage = (sums.count * of_one).sqrt();
-                    yardstick.vagueness(parameter, *value, (variance * of_one).sqrt(), leverage).powi(-2)
+                    yardstick.vagueness(parameter, values, (variance * of_one).sqrt(), leverage).powi(-2)
                 };
                 wanted.iter().map(of).fold(f64::INFINITY, f64::min)
             }

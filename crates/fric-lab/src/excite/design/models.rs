@@ -134,8 +134,8 @@ impl Studio<'_> {
                     let yardstick =
                         crate::certainty::undetermined::yardsticks(&problem, &[model.values]).first().copied()?;
                     let place = |of: &Parameter| model.free.iter().position(|free| free == of);
-                    let wanted = wanted.iter().filter_map(|of| Some((place(of)?, *of, model.values[of.place()])));
-                    let measure = Measure::Knowledge { wanted: wanted.collect(), yardstick };
+                    let wanted = wanted.iter().filter_map(|of| Some((place(of)?, *of))).collect();
+                    let measure = Measure::Knowledge { wanted, values: Box::new(model.values), yardstick };
                     Some(vec![Test { measure, noise_n, pieces: sums_of_logs(&problem, &model.values)? }])
                 }
             }
@@ -185,7 +185,7 @@ impl Studio<'_> {
                     let value = model.values[parameter.place()];
                     let standard_error = covariance[(place, place)].sqrt();
                     let leverage = (count * inverse[(place, place)]).sqrt();
-                    let vagueness = yardstick.vagueness(parameter, value, standard_error, leverage);
+                    let vagueness = yardstick.vagueness(parameter, &model.values, standard_error, leverage);
                     Some(KnownParameter { parameter: *parameter, value, standard_error, vagueness })
                 };
                 Some(Goal::Determined(wanted.iter().filter_map(known).collect()))

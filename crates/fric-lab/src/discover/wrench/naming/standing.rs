@@ -4,7 +4,6 @@ use fric_core::effects::Effect;
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::catalogue::fitted;
-use crate::candidates::ripple::is_period;
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::wrench::bench::{Bench, Model, Trial, Unknown};
 use crate::discover::wrench::candidate::Candidate;
@@ -33,7 +32,7 @@ pub fn standings(bench: &Bench<'_>, trial: &Trial, candidates: &[Candidate]) -> 
     let of = |candidate: &Candidate| {
         let [covariance, independent] = covariances.as_ref()?;
         // The period of a ripple has no neutral value.
-        let is_of = |parameter: &Parameter, effect| parameter.effect() == Some(effect) && !is_period(parameter);
+        let is_of = |parameter: &Parameter, effect| parameter.effect() == Some(effect) && !parameter.is_period();
         let is_its = |unknown: &Unknown| match (*candidate, unknown) {
             (Candidate::Own(cable, effect), Unknown::Own(of, parameter)) => cable == *of && is_of(parameter, effect),
             (Candidate::Alike(effect), Unknown::Alike(parameter)) => is_of(parameter, effect),
