@@ -62,8 +62,10 @@ fn kind_or_none(effect: Option<Effect>) -> &'static str {
 fn in_figures(goal: &Goal) -> String {
     match goal {
         Goal::Separated { effects, delta_bic } => {
-            let of = |(effect, delta_bic): (&Option<Effect>, &Option<f64>)| {
-                delta_bic.map(|delta_bic| format!("ΔBIC {delta_bic:.0} if it is {}", kind_or_none(*effect)))
+            let of = |(effect, delta_bic): (&Option<Effect>, &Option<f64>)| match (delta_bic, effect) {
+                (Some(delta_bic), _) => Some(format!("ΔBIC {delta_bic:.0} if it is {}", kind_or_none(*effect))),
+                (None, Some(effect)) => Some(format!("no evidence if it is {effect}")),
+                (None, None) => None,
             };
             effects.iter().zip(delta_bic).filter_map(of).collect::<Vec<String>>().join(", ")
         }

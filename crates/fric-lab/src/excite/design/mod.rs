@@ -83,7 +83,8 @@ pub struct Forecast {
 /// The knowledge after a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Goal {
-    /// `ΔBIC` in favour of the effect that the cable has: if it is the first, and if it is the second; `None` for no effect.
+    /// `ΔBIC` in favour of the effect that the cable has: if it is the first, and if it is the second; `None` for no effect, and for one that is too small
+    /// to be seen or that the other can always imitate.
     Separated {
         /// The effects.
         effects: [Option<Effect>; 2],

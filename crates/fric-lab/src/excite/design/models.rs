@@ -33,6 +33,16 @@ pub(super) enum QuestionModels {
     },
 }
 
+impl QuestionModels {
+    /// Drops the question whether the second effect, if it is the true one, can be told from the first. No run answers that if the first does the same
+    /// wherever it is weak enough, as a bent sensor that is nearly straight does what a gain does. Returns `None` if nothing is to be dropped.
+    pub(super) fn ask_for_first_alone(&mut self) -> Option<()> {
+        let Self::Separate { first, right, .. } = self else { return None };
+        right[*first].as_ref()?;
+        right[1 - *first].take().map(|_| ())
+    }
+}
+
 impl Studio<'_> {
     /// Returns the models of a question. The first effect is as in the model, or half as strong as the maximum in machines.
     pub(super) fn case(&self, question: &Question) -> Result<QuestionModels, ExcitationError> {

@@ -21,6 +21,9 @@ const NOISES_N: [f64; 2] = [1e-9, 1e6];
 /// Number of rounds of selection and refit, after a first one that determines the size of the second effects.
 const ROUNDS: usize = 2;
 
+/// A run with the goals that it reaches.
+type Designed = (Excitation, Vec<Option<Goal>>);
+
 /// The data of a design.
 pub(super) struct Studio<'a> {
     pub(super) robot: &'a RobotFile,
@@ -101,35 +104,24 @@ impl<'a> Studio<'a> {
     }
 
     pub(super) fn design(&self) -> Result<Experiment, ExcitationError> {
-        self.progress.begin(4 + 2 * ROUNDS);
+        self.progress.begin(4 + 4 * ROUNDS);
         let in_all = |work: &(dyn Fn(&Question) -> Result<QuestionModels, ExcitationError> + Sync)| {
             self.questions.par_iter().map(work).collect::<Result<Vec<QuestionModels>, ExcitationError>>()
         };
         let mut cases = in_all(&|question| self.case(question))?;
         self.step_done()?;
-        let mut best: Option<(f64, Excitation, Vec<Option<Goal>>)> = None;
-        for round in 0..=ROUNDS {
-            let run = self.chosen(&cases)?;
-            self.step_done()?;
-            let measurements = predicted::frictionless(&self.robot.params(), &mut run.clone())?;
-            let goals = self.forecast(&measurements, &mut cases);
-            self.step_done()?;
-            if round == 0 {
-                // The first run determines the size of the second effects.
-                self.questions.par_iter().zip(&mut cases).for_each(|(question, case)| {
-                    self.establish(question, &measurements, case);
-                });
-                continue;
-            }
-            let worth = |goal: &Option<Goal>| goal.as_ref().map_or(0.0, Goal::score).max(1e-6).ln();
-            let value: f64 = goals.iter().map(worth).sum();
-            if best.as_ref().is_none_or(|(best, ..)| value > *best) {
-                best = Some((value, run, goals));
-            }
+        // The first run determines the size of the second effects.
+        let (_, measurements) = self.next_run(&mut cases)?;
+        self.questions.par_iter().zip(&mut cases).for_each(|(question, case)| {
+            self.establish(question, &measurements, case);
+        });
+        let (mut excitation, mut goals) = self.best_run(&mut cases)?;
+        let open = cases.iter_mut().zip(&goals).filter(|(_, goal)| !goal.as_ref().is_some_and(Goal::tells));
+        if open.filter_map(|(case, _)| case.ask_for_first_alone()).count() > 0 {
+            (excitation, goals) = self.best_run(&mut cases)?;
         }
         let of_standard = self.forecast(&self.standard, &mut cases);
         self.step_done()?;
-        let Some((_, excitation, goals)) = best else { return Err(self.broken_off()) };
         let forecasts = self.questions.iter().zip(goals).zip(of_standard);
         let forecasts: Vec<Forecast> = forecasts
             .filter_map(|((question, goal), standard)| {
@@ -141,6 +133,31 @@ impl<'a> Studio<'a> {
             return Err(self.cannot_tell(&forecasts));
         }
         Ok(Experiment { excitation, forecasts })
+    }
+
+    /// Returns the run with the greatest expected worth of some rounds, each with what the one before has shown to come near the truth, and the goals that
+    /// it reaches.
+    fn best_run(&self, cases: &mut [QuestionModels]) -> Result<Designed, ExcitationError> {
+        let mut best: Option<(f64, Designed)> = None;
+        for _ in 0..ROUNDS {
+            let (designed, _) = self.next_run(cases)?;
+            let worth = |goal: &Option<Goal>| goal.as_ref().map_or(0.0, Goal::score).max(1e-6).ln();
+            let value: f64 = designed.1.iter().map(worth).sum();
+            if best.as_ref().is_none_or(|(best, _)| value > *best) {
+                best = Some((value, designed));
+            }
+        }
+        best.map(|(_, designed)| designed).ok_or_else(|| self.broken_off())
+    }
+
+    /// Returns the run chosen with the present knowledge of the models, the goals that it reaches, and its samples; adds the models that come nearest on it.
+    fn next_run(&self, cases: &mut [QuestionModels]) -> Result<(Designed, Measurements<'_>), ExcitationError> {
+        let run = self.chosen(cases)?;
+        self.step_done()?;
+        let measurements = predicted::frictionless(&self.robot.params(), &mut run.clone())?;
+        let goals = self.forecast(&measurements, cases);
+        self.step_done()?;
+        Ok(((run, goals), measurements))
     }
 
     fn step_done(&self) -> Result<(), ExcitationError> {
