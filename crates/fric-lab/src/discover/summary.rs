@@ -31,7 +31,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
     text += &log_table(result.cables.iter().map(|cable| (cable.name.as_str(), cable.per_log.as_slice())));
     for effect in &result.common_effects {
         text += "\n";
-        text += &wrapped("", &effect.in_words(result.cables.len()));
+        text += &wrapped("", &format!("{}.", effect.in_words(result)));
     }
     let is_quiet = |cable: &&DiscoverCableResult| {
         cable.verdict == "complete"

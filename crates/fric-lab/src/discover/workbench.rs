@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::certainty::undetermined::inverse_of_normal;
 use crate::fit::{CableRecord, Parameter};
 use crate::samples::record::PerLog;
-use crate::samples::split::Block;
+use crate::samples::split::{Block, used};
 use crate::search::gang::{Gang, Seat};
 use crate::search::pass::{Forces, Part};
 use crate::search::problem::{Comparison, Loss, Member, Problem};
@@ -81,21 +81,17 @@ pub struct Workbench<'a> {
 impl<'a> Workbench<'a> {
     /// Returns the samples that count and are held out, or are used for training.
     pub fn used(&self, held_out: bool) -> Vec<bool> {
-        let mut used = vec![false; self.counts.len()];
-        for block in self.blocks.iter().filter(|block| block.held_out == held_out) {
-            let (Some(used), Some(counts)) =
-                (used.get_mut(block.cycles.clone()), self.counts.get(block.cycles.clone()))
-            else {
-                continue;
-            };
-            used.copy_from_slice(counts);
-        }
-        used
+        used(self.blocks, self.counts, held_out)
     }
 
     /// Returns the number of held-out samples, or of training samples.
     pub fn count(&self, held_out: bool) -> usize {
         self.used(held_out).into_iter().filter(|used| *used).count()
+    }
+
+    /// Whether a zero is free beside these parameters, of the recording or of each log.
+    pub fn has_zero(&self, free: &[Parameter]) -> bool {
+        free.iter().any(|parameter| parameter.place() == OFFSET) || self.record.per_log.is_some()
     }
 
     /// Returns the standard deviation of the reference over the held-out samples, N; NaN if there are none.

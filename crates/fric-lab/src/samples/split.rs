@@ -33,6 +33,16 @@ pub fn blocks(cycle_count: usize, interval_s: f64) -> Vec<Block> {
     cut(0..cycle_count, interval_s, &mut { DRAW })
 }
 
+/// Returns which of the samples that count belong to the held-out blocks, or to the training blocks.
+pub fn used(blocks: &[Block], counts: &[bool], held_out: bool) -> Vec<bool> {
+    let mut used = vec![false; counts.len()];
+    for block in blocks.iter().filter(|block| block.held_out == held_out) {
+        let cycles = used.iter_mut().zip(counts).skip(block.cycles.start).take(block.cycles.len());
+        cycles.for_each(|(used, counts)| *used = *counts);
+    }
+    used
+}
+
 /// Where the draw begins.
 const DRAW: u32 = 0x9e37_79b9;
 

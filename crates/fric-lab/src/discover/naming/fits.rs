@@ -1,7 +1,7 @@
 //! Cache of the models that a search has fitted: each set of effects is fitted once.
 
 use fric_core::effects::Effect;
-use fric_core::parameters::{MU, OFFSET, Values};
+use fric_core::parameters::{MU, Values};
 
 use super::{LEAST_GAIN, LEAST_SIZE, Search, Set, set_of, without};
 use crate::candidates::catalogue::{fitted, has, starts};
@@ -24,8 +24,7 @@ impl Search<'_, '_> {
         let model = self.fit(found);
         let slides = model.values[MU] > 0.0;
         // A sensor offset and an offset at the platform have the same effect on the force.
-        let has_offset =
-            model.free.iter().any(|parameter| parameter.place() == OFFSET) || self.bench.record.per_log.is_some();
+        let has_zero = self.bench.has_zero(&model.free);
         let lacking = |friction: bool| -> Vec<Effect> {
             Effect::ALL
                 .iter()
@@ -34,7 +33,7 @@ impl Search<'_, '_> {
                     effect.is_friction() == friction && !has(*effect, &model.values) && !found.contains(effect)
                 })
                 .filter(|effect| *effect != Effect::Presliding || slides)
-                .filter(|effect| *effect != Effect::SensorOffset || !has_offset)
+                .filter(|effect| *effect != Effect::SensorOffset || !has_zero)
                 .filter(|effect| effect.first().is_none_or(|first| has(first, &model.values)))
                 .collect()
         };

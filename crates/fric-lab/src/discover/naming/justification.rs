@@ -85,9 +85,7 @@ impl Search<'_, '_> {
             return None;
         }
         let model = self.fit(others);
-        let has_offset =
-            model.free.iter().any(|parameter| parameter.place() == OFFSET) || self.bench.record.per_log.is_some();
-        let of_a_line = [(Effect::SensorGain, false), (Effect::SensorOffset, has_offset)];
+        let of_a_line = [(Effect::SensorGain, false), (Effect::SensorOffset, self.bench.has_zero(&model.free))];
         let is_missing =
             |(of, is_there): &(Effect, bool)| !is_there && !others.contains(of) && !has(*of, &model.values);
         let missing: Vec<Effect> = of_a_line.into_iter().filter(is_missing).map(|(of, _)| of).collect();
@@ -138,11 +136,10 @@ impl Search<'_, '_> {
 
     /// Returns the parameter that an effect cannot be distinguished from, if the log determines none of the effect's own parameters even with its
     /// others known. An offset at the platform is considered too, because every cable may have one.
-    fn confused_with(&self, model: &Trial, effect: Effect) -> Option<&'static str> {
+    fn confused_with(&self, model: &Trial, effect: Effect) -> Option<Parameter> {
         let mut free = model.free.clone();
-        let has_offset = free.iter().any(|parameter| [OFFSET, OFFSET_OF_SENSOR].contains(&parameter.place()))
-            || self.bench.record.per_log.is_some();
-        free.extend(Parameter::all().filter(|parameter| parameter.place() == OFFSET && !has_offset));
+        let has_zero = self.bench.has_zero(&free) || free.iter().any(|of| of.place() == OFFSET_OF_SENSOR);
+        free.extend(Parameter::all().filter(|parameter| parameter.place() == OFFSET && !has_zero));
         let of_effect = fitted(effect);
         let (covariance, all) =
             crate::certainty::undetermined::vagueness(&self.bench.problem(&free, None), &[model.values]);
@@ -165,7 +162,7 @@ impl Search<'_, '_> {
         let (own, others): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|place| own(&all[*place].1));
         let nearest = |other: &usize| own.iter().map(|own| correlation(*own, *other)).fold(0.0, f64::max);
         let other = others.into_iter().max_by(|one, other| nearest(one).total_cmp(&nearest(other)))?;
-        Some(all[other].1.parameter.row().key)
+        Some(all[other].1.parameter)
     }
 }
 

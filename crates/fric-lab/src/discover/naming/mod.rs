@@ -24,7 +24,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fric_core::effects::Effect;
 use fric_core::effects::empirical::SHARES;
-use fric_core::parameters::Values;
+use fric_core::parameters::{OFFSET, Values};
 
 use self::evidence::{delta_bic, inflation};
 use self::fits::gains;
@@ -87,8 +87,8 @@ pub enum Refusal {
     Absent,
     /// What is left without it is no more than noise, as far as the log shows the noise.
     WithinNoise,
-    /// The log cannot distinguish the effect from the parameter of this name.
-    Open(&'static str),
+    /// The log cannot distinguish the effect from this parameter.
+    Open(Parameter),
     /// The effect's size differs between operating conditions of this name, so something else is mistaken for it.
     Unsteady(&'static str),
     /// An unnamed law over this signal explains more in the effect's place and leaves it little to explain.
@@ -262,8 +262,9 @@ impl<'b, 'a> Search<'b, 'a> {
         if self.bench.knows_load(self.noise_n) {
             return BTreeMap::new();
         }
+        let offset = Parameter::all().find(|of| of.place() == OFFSET);
         let of_the_curve = [Effect::SensorGain, Effect::SensorNonlinearity];
-        of_the_curve.into_iter().map(|effect| (effect, Refusal::Open("offset_n"))).collect()
+        of_the_curve.into_iter().filter_map(|effect| Some((effect, Refusal::Open(offset?)))).collect()
     }
 
     /// Returns these, and those that may not be there.
@@ -296,8 +297,7 @@ impl<'b, 'a> Search<'b, 'a> {
             let (effect, refusal) = (*effect, *refusal);
             found.retain(|of| *of != effect);
             // Effects that could not be distinguished from this one can be distinguished without it.
-            let keys: Vec<&str> = Parameter::of(effect).map(|parameter| parameter.row().key).collect();
-            self.refused.retain(|_, refusal| !matches!(refusal, Refusal::Open(key) if keys.contains(key)));
+            self.refused.retain(|_, refusal| !matches!(refusal, Refusal::Open(of) if of.effect() == Some(effect)));
             self.refused.insert(effect, refusal);
             self.renumber(found);
         }
@@ -371,11 +371,16 @@ impl<'b, 'a> Search<'b, 'a> {
             return None;
         }
         let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
-        let others = self.round(&others).into_iter().filter(|(other, _)| *other != effect);
+        let without = self.fit(&others);
         // An effect that the log cannot distinguish from it is another name for it.
         let beyond = self.beyond_the_log();
-        let is_rival = |other: &Effect| beyond.contains_key(other) || !self.refused.contains_key(other);
-        best(others.filter(|(other, _)| is_rival(other)).collect::<Vec<_>>())
+        let mut rivals = self.round(&others);
+        rivals
+            .retain(|(other, _)| *other != effect && (beyond.contains_key(other) || !self.refused.contains_key(other)));
+        let closest = rivals.iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))?;
+        let memory = inflation(self.bench, &closest.1, &fitted(closest.0));
+        let evidence = |(_, trial): &(Effect, Trial)| self.delta_bic(&without, trial, memory);
+        rivals.into_iter().min_by(|one, other| evidence(one).total_cmp(&evidence(other)))
     }
 
     /// Returns the candidates that help a model but do not suffice, the best first. Where only the error of the noise's estimate leaves room for them,
@@ -412,7 +417,8 @@ impl<'b, 'a> Search<'b, 'a> {
             })
             .filter(|tried| self.delta_bic(&model, &tried.trial, tried.inflation) < least_evidence)
             .collect();
-        tried.sort_by(|one, other| one.trial.training.total_cmp(&other.trial.training));
+        let evidence = |tried: &Tried| self.delta_bic(&model, &tried.trial, tried.inflation);
+        tried.sort_by(|one, other| evidence(one).total_cmp(&evidence(other)));
         tried
     }
 }
@@ -424,11 +430,6 @@ fn without(effect: Effect, values: &Values) -> Values {
         neutral[parameter.place()] = parameter.row().neutral;
     }
     neutral
-}
-
-/// Returns the best trial on the training samples.
-fn best(tried: impl IntoIterator<Item = (Effect, Trial)>) -> Option<(Effect, Trial)> {
-    tried.into_iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))
 }
 
 fn set_of(found: &[Effect]) -> Set {

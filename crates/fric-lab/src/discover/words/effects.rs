@@ -5,7 +5,8 @@ use fric_core::effects::Effect;
 use super::{condition, evidence, name_of, newtons};
 use crate::discover::naming::Refusal;
 use crate::discover::result::{
-    CommonEffect, CommonParameter, EffectResult, Evidence, RunnerUpResult, TablePoint, TableResult, TriedResult,
+    CommonEffect, CommonParameter, DiscoverResult, EffectResult, Evidence, RunnerUpResult, TablePoint, TableResult,
+    TriedResult,
 };
 use crate::fit::HALF_INTERVAL;
 use crate::scale;
@@ -125,7 +126,10 @@ impl Refusal {
                 "what is left without it is no more than noise, as far as the log shows what its noise is".to_owned()
             }
             Self::Absent => "its interval holds the value at which it does nothing".to_owned(),
-            Self::Open(other) => format!("the log cannot tell it from {}", name_of(other)),
+            Self::Open(other) => {
+                let of = other.effect().map_or_else(String::new, |effect| format!(" of {}", effect.kind()));
+                format!("the log cannot tell it from {}{of}", name_of(other.row().key))
+            }
             Self::Unsteady(signal) => {
                 format!(
                     "its size is not one constant, it changes with the {}: something else is taken for it",
@@ -152,19 +156,28 @@ impl Refusal {
 }
 
 impl CommonEffect {
-    /// Returns on how many of all cables the effect occurs, with its parameters over them.
+    /// Returns on which cables of a result the effect occurs, with its parameters over them.
     #[must_use]
-    pub fn in_words(&self, cable_count: usize) -> String {
-        let on = if self.cables.len() == cable_count {
-            match cable_count {
-                2 => "both cables".to_owned(),
-                count => format!("all {} cables", counted(count)),
-            }
-        } else {
-            listed(&self.cables)
+    pub fn in_words(&self, result: &DiscoverResult) -> String {
+        let others: Vec<&str> = result
+            .cables
+            .iter()
+            .map(|cable| cable.name.as_str())
+            .filter(|name| !self.cables.iter().any(|of| of == name))
+            .collect();
+        let on = match (others.len(), self.cables.len()) {
+            (0, 2) => "both cables".to_owned(),
+            (0, count) => format!("all {} cables", counted(count)),
+            _ => listed(&self.cables),
         };
         let values: Vec<String> = self.parameters.iter().map(CommonParameter::in_words).collect();
-        stating_intervals(format!("{} on {on}: {}", self.kind, values.join(", ")))
+        let values = stating_intervals(format!("{} on {on}: {}", self.kind, values.join(", ")));
+        // The wrench does not show the inner tension, with which all gains go.
+        if result.wrench.is_some() && self.kind == Effect::SensorGain.kind() && !others.is_empty() {
+            let sensors = if others.len() == 1 { "sensor" } else { "sensors" };
+            return format!("{values}. They rest on the {sensors} of {}, taken to be right", listed(&others));
+        }
+        values
     }
 }
 

@@ -13,7 +13,7 @@ use crate::certainty::undetermined::inverse_of_normal;
 use crate::fit::{CableRecord, Parameter};
 use crate::replay::{Deviation, WrenchReference};
 use crate::samples::noise::white_noise;
-use crate::samples::split::Block;
+use crate::samples::split::{Block, used};
 use crate::search::gram::Gram;
 use crate::search::optimizer::minimize;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
@@ -119,12 +119,7 @@ pub struct Bench<'a> {
 impl<'a> Bench<'a> {
     /// Returns which samples count and belong to the held-out blocks, or to the training blocks.
     pub fn used(&self, held_out: bool) -> Vec<bool> {
-        let mut used = vec![false; self.counts.len()];
-        for block in self.blocks.iter().filter(|block| block.held_out == held_out) {
-            let cycles = used.iter_mut().zip(&self.counts).skip(block.cycles.start).take(block.cycles.len());
-            cycles.for_each(|(used, counts)| *used = *counts);
-        }
-        used
+        used(&self.blocks, &self.counts, held_out)
     }
 
     /// Returns the number of these samples.

@@ -36,7 +36,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance:
         (overview(result, |place, name| html! { a href=(format!("#cable-{place}")) { (name) } }))
         @if let Some(gap) = &result.wrench { (of_wrench(gap)) }
         @for effect in &result.common_effects {
-            p { (effect.in_words(result.cables.len())) "." }
+            p { (effect.in_words(result)) "." }
         }
         @for (place, (cable, found)) in result.cables.iter().zip(discoveries).enumerate() {
             section.cable id=(format!("cable-{place}")) data-cable=(place) {

@@ -39,7 +39,7 @@ impl Search<'_> {
     }
 
     /// Returns the decrease of the held-out squares that a candidate needs to enter.
-    fn least_gain(&self, trial: &Trial) -> f64 {
+    pub(super) fn least_gain(&self, trial: &Trial) -> f64 {
         let noise = self.held_out_squares(self.noise_square);
         (LEAST_GAIN * (trial.held_out - noise)).max(LEAST_SIZE * noise)
     }

@@ -65,7 +65,7 @@ impl Search<'_> {
     }
 
     /// Returns the models with one more candidate, for each of some that promise anything.
-    fn each_beside(&mut self, found: &[Candidate], candidates: &[Candidate]) -> Vec<(Candidate, Trial)> {
+    pub(super) fn each_beside(&mut self, found: &[Candidate], candidates: &[Candidate]) -> Vec<(Candidate, Trial)> {
         let with = |candidate: &Candidate| set_of(&[found, &[*candidate]].concat());
         let unknown: Vec<Candidate> =
             candidates.iter().copied().filter(|candidate| !self.fits.contains_key(&with(candidate))).collect();

@@ -6,7 +6,7 @@ use fric_core::effects::Effect;
 
 use super::doubt::is_of_one_sensor;
 use super::standing::{Standing, disagreement, standings};
-use super::{LEAST_ALIKE, LEAST_AWAY, Named, Search, without};
+use super::{LEAST_ALIKE, LEAST_AWAY, Named, Search, is_one_of_many, without};
 use crate::discover::naming::{LEAST_SIZE, Refusal, STRONG_BIC};
 use crate::discover::wrench::bench::Trial;
 use crate::discover::wrench::candidate::Candidate;
@@ -58,9 +58,9 @@ impl Search<'_> {
         let refusal = if self.is_at_end(candidate, trial) {
             Some(Refusal::AtBound)
         } else if is_small
-            || delta_bic >= -STRONG_BIC
             || away < LEAST_AWAY
-            || self.beyond_one_block(trial, &without) < STRONG_BIC * inflation
+            || !is_one_of_many(found, candidate)
+                && (delta_bic >= -STRONG_BIC || self.beyond_one_block(trial, &without) < STRONG_BIC * inflation)
         {
             Some(Refusal::Weak)
         } else if !self.is_more_than_usual(candidate, trial) {

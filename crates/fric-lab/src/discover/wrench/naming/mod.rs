@@ -5,9 +5,11 @@
 //! 1. *Enter.* Candidates enter one after the other, each time the one with the most evidence on the training samples that also helps on the held-out
 //!    samples. Several cables with the same effect become one effect with the same parameters if that explains as much, and the other way round.
 //! 2. *Leave.* A name stays if the evidence for it is strong, also outside the block in which it helps most; it is large enough to matter; it exceeds
-//!    what robots without it show; its parameters keep clear of their bounds; and cables that have it alike agree in it. The least significant name that
-//!    cannot stay is set aside, and does not return in this search.
-//! 3. *Exchange.* Each name is compared with the best other candidate in its place.
+//!    what robots without it show; its parameters keep clear of their bounds; and cables that have it alike agree in it. For an effect that several other
+//!    cables have too, it suffices that its interval is clear of doing nothing. The least significant name that cannot stay is set aside, and does not
+//!    return in this search.
+//! 3. *Exchange.* Each name is compared with the best other candidate in its place. An effect that several other cables have too gives way only to strong
+//!    evidence.
 //!
 //! The search ends if nothing changes, and in any case after [`ROUNDS`] rounds of at most [`MOST`] names. It begins without a name or, where that is better
 //! than any single name, with all force sensors in doubt.
@@ -212,6 +214,13 @@ fn set_of(found: &[Candidate]) -> Vec<Candidate> {
     let mut set = found.to_vec();
     set.sort_unstable();
     set
+}
+
+/// Whether at least [`LEAST_ALIKE`] other cables have the same effect as one cable has by a candidate. Then it is no surprise on this one.
+fn is_one_of_many(found: &[Candidate], candidate: Candidate) -> bool {
+    let Candidate::Own(_, effect) = candidate else { return false };
+    let others = found.iter().filter(|of| **of != candidate && matches!(of, Candidate::Own(_, own) if *own == effect));
+    others.count() >= LEAST_ALIKE
 }
 
 /// Returns the candidates except one.
