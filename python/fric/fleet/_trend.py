@@ -220,7 +220,8 @@ def _checked(limits: Limits, series: tuple[Values, ...]) -> dict[str, tuple[floa
     known = {one.parameter for one in series} | {f"{one.robot}/{one.cable}/{one.parameter}" for one in series}
     must_be("limits", limits, 'a dict of pairs, such as {"mu": (None, 0.05)}', Mapping)
     for name, bounds in limits.items():
-        if name not in known:
+        # Without a series nothing is known, and the remark on the logs says why.
+        if series and name not in known:
             raise ConfigError(_unknown_name("parameter for a limit", str(name), sorted({one.parameter for one in series})))
         pair = tuple(bounds) if isinstance(bounds, (list, tuple, np.ndarray)) else ()
         if len(pair) != 2 or not all(one is None or (isinstance(one, (int, float)) and math.isfinite(one)) for one in pair):

@@ -11,10 +11,12 @@ from typing import Any
 from .._fric import __version__
 from .._results.base import counted
 from ._alarms import day
+from ._joints import LEAST_LOGS
 from ._run import told_once
 from ._trend import Alarm, Change, Series, Trend
 
 FORMAT = "fric-trend/1"
+_TOO_FEW = f"too few logs with a date, {2 * LEAST_LOGS} of a robot are needed"
 
 
 def between(change: Change) -> str:
@@ -33,14 +35,21 @@ def headline(trend: Trend) -> str:
     """Returns a sentence that states what was examined."""
     robots = len({one.robot for one in trend.series})
     examined = f"{counted(trend.logs, 'log')} of {counted(robots, 'robot')}, {len(trend.series)} series by fric {trend.operation}"
-    alarms = "nothing has changed" if not trend.alarms else counted(len(trend.alarms), "alarm")
-    return f"{examined}: {alarms}"
+    if trend.alarms:
+        return f"{examined}: {counted(len(trend.alarms), 'alarm')}"
+    return f"{examined}: {'nothing has changed' if _may_show_a_change(trend) else _TOO_FEW}"
+
+
+def _may_show_a_change(trend: Trend) -> bool:
+    return any(len(one.values) >= 2 * LEAST_LOGS for one in trend.series)
 
 
 def verdict(trend: Trend) -> str:
     """Returns the result in a sentence for people who do not run the robots."""
     robots = list(dict.fromkeys(one.robot for one in trend.series))
     fleet = f"{len(robots)} robots" if len(robots) != 1 else "the robot"
+    if not trend.alarms and not _may_show_a_change(trend):
+        return f"This cannot tell whether anything has changed: {_TOO_FEW}."
     if not trend.alarms:
         return f"Nothing has changed on {fleet}."
     places = list(dict.fromkeys(f"{one.robot} {one.cable}" for one in trend.alarms))

@@ -321,7 +321,9 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
     if !all_geometry {
         wrench.push("no geometry: `base_m` and `platform_m` are needed for every cable".to_owned());
     }
-    if holdings.posed == 0 {
+    if !has_rows {
+        wrench.push(nothing());
+    } else if holdings.posed == 0 {
         wrench.push("no pose: the directions of the cables are not known".to_owned());
     }
     let has_wrench = has_rows && wrench.is_empty();
@@ -331,7 +333,9 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
         wrench.push(format!("no outside wrench in the log: {instead}"));
     }
     let mut errors = Vec::new();
-    if !holdings.has_reference() {
+    if !has_rows {
+        errors.push(nothing());
+    } else if !holdings.has_reference() {
         errors.push(holdings.without_reference(&model.robot).0);
     } else if needs_pose && holdings.posed == 0 {
         errors.push(no_pose());

@@ -8,7 +8,7 @@ use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 use super::result::{FitCableResult, FitResult, LogValues, Numbers, OpenPartResult, OpenResult};
 use crate::discover::words::recording_lines;
 use crate::search::vector::Parameter;
-use crate::text::{digits_of, number, plain, table, wrapped};
+use crate::text::{digits_of, number, plain, significant, table, wrapped};
 
 /// Returns \[P\] table I, the uncertainties, and what the log does not determine.
 pub(crate) fn describe(result: &FitResult) -> String {
@@ -219,7 +219,7 @@ fn effect_table(result: &FitResult, effect: Effect) -> String {
             let error = cable.standard_errors.get(&name);
             Some(match error {
                 Some(error) => number(value, digits_of(error)),
-                None => format!("({value})"),
+                None => format!("({})", significant(value)),
             })
         };
         let header = parameter.row().key.to_owned();
@@ -323,9 +323,14 @@ fn undetermined(result: &FitResult) -> String {
             let _ = writeln!(
                 text,
                 "\n{} of {} is at its bound of {value}: the log would have it beyond. Something else is missing in the\nmodel, or the \
-                 parameter has nothing to explain.",
+                 parameter has nothing to explain.{}",
                 shown_name(&parameter),
                 listed(&cables, result),
+                if parameter.place() == MU {
+                    "\n  Does the length grow where it should shrink, or is a force at the winch taken for one at the platform?"
+                } else {
+                    ""
+                }
             );
         }
     }

@@ -72,12 +72,19 @@ pub enum SignalError {
         reason: String,
     },
     /// The requested part contains no row.
-    #[error("no row of the log is {}: its last is {last_s:.3} s after its first; {}", Between(part), advice::PART)]
+    #[error(
+        "no row of the log is {}: its {} is {row_s:.3} s after its first; {}",
+        Between(part),
+        if *has_gap { "next" } else { "last" },
+        advice::PART
+    )]
     NothingInPart {
         /// The part.
         part: Part,
         /// Time of the last row that was read, s after the first.
-        last_s: f64,
+        row_s: f64,
+        /// Whether this row is after the part, which is in a gap of the log.
+        has_gap: bool,
     },
     /// There is a force but no length.
     #[error("the messages on `{topic}` bring forces but no cable lengths (`position`); {}", advice::LENGTH)]

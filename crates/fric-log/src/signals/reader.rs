@@ -219,8 +219,9 @@ impl SignalReader {
         if self.progress.has_begun || self.progress.part == Part::default() {
             return Ok(None);
         }
-        let Progress { part, last_s, .. } = self.progress;
-        Err(SignalError::NothingInPart { part, last_s })
+        let Progress { part, last_s: row_s, .. } = self.progress;
+        let has_gap = part.end_s.is_some_and(|end_s| row_s >= end_s);
+        Err(SignalError::NothingInPart { part, row_s, has_gap })
     }
 
     /// Returns the prepared row, with the pose from its lengths if requested.

@@ -1,7 +1,9 @@
 //! Verdicts on a replay, a fit and a hysteresis: how much of an error compensation leaves.
 
+use fric_core::parameters::OFFSET;
 use fric_lab::errors::{ForceError, WrenchError};
-use fric_lab::fit::result::FitResult;
+use fric_lab::fit::Parameter;
+use fric_lab::fit::result::{FitCableResult, FitResult};
 use fric_lab::hysteresis::HysteresisResult;
 use fric_lab::text::listed;
 
@@ -184,7 +186,7 @@ fn is_many(flagged: u64, samples: u64) -> bool {
 /// Returns the verdict on a fit: the remaining fraction of the error.
 #[must_use]
 pub fn of_fit(result: &FitResult) -> Verdict {
-    let of_cable = |cable: &fric_lab::fit::result::FitCableResult| {
+    let of_cable = |cable: &FitCableResult| {
         let (before, after) = cable.before.zip(cable.after)?;
         Some(Compared { name: cable.name.clone(), before: before.rms_n, after: after.rms_n, unit: "N" })
     };
@@ -194,7 +196,7 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     let left = share_left("the force error", &cables).or_else(|| wrench_left(&wrench));
     let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
     let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
-    let fitted = format!("Friction is fitted on {}", counted(result.cables.len(), "cable"));
+    let fitted = fitted(result);
     let worse = worse(&all);
     let it = if worse.is_some() { "elsewhere it" } else { "it" };
     let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}."));
@@ -228,6 +230,26 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     }
     todo.push("Replay another log with the fitted file: that judges it, this log taught it.".to_owned());
     Verdict { tone, sentence, todo }
+}
+
+/// Returns what is fitted on how many cables, as a clause.
+fn fitted(result: &FitResult) -> String {
+    let fitted_of = |cable: &FitCableResult| -> Vec<Parameter> {
+        cable.standard_errors.0.iter().filter_map(|(name, _)| Parameter::named(name)).collect()
+    };
+    let is_friction = |of: &Parameter| of.is_friction() && of.place() != OFFSET;
+    let with_friction = result.cables.iter().filter(|cable| fitted_of(cable).iter().any(is_friction)).count();
+    if with_friction > 0 {
+        return format!("Friction is fitted on {}", counted(with_friction, "cable"));
+    }
+    let mut names: Vec<String> = result.cables.iter().flat_map(fitted_of).map(|of| of.to_string()).collect();
+    names.sort_unstable();
+    names.dedup();
+    if names.is_empty() {
+        "Nothing is fitted".to_owned()
+    } else {
+        format!("No friction is fitted, only {}", listed(&names))
+    }
 }
 
 /// Returns the verdict on a hysteresis: the remaining fraction of its width.

@@ -6,6 +6,11 @@ use fric_core::robot::file::TIME_COLUMN;
 use fric_core::text_file::name_problem;
 use fric_lab::text::wrapped;
 
+/// Stiffness before a cable slides, per force: friction of 3 % of the force builds up over 0.3 mm, as on the robot of the paper.
+const SIGMA_PER_FORCE_1_PER_M: f64 = 100.0;
+/// Force that is assumed where none is known, N.
+const USUAL_FORCE_N: f64 = 10.0;
+
 /// A column of a CSV log and its probable signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnGuess {
@@ -20,6 +25,8 @@ pub struct ColumnGuess {
 pub struct Draft {
     name: String,
     interval_s: Option<f64>,
+    /// Stiffness before the cable slides, from the size of the forces, N/m.
+    sigma_n_per_m: f64,
     /// Names of the cables.
     pub cables: Vec<String>,
     /// Keys and values under `[log]`.
@@ -37,6 +44,7 @@ impl Draft {
         Self {
             name,
             interval_s: None,
+            sigma_n_per_m: SIGMA_PER_FORCE_1_PER_M * USUAL_FORCE_N,
             cables: Vec::new(),
             paths: Vec::new(),
             columns: Vec::new(),
@@ -63,9 +71,14 @@ impl Draft {
         draft
     }
 
-    pub fn set_interval_s(&mut self, interval_s: Option<f64>) {
-        self.interval_s = interval_s;
-        if interval_s.is_none() {
+    /// Takes the usual interval of the samples, s, and the mean force, N, if there are samples.
+    pub fn set_beginning(&mut self, beginning: Option<(f64, f64)>) {
+        if let Some((interval_s, force_n)) = beginning {
+            self.interval_s = Some(interval_s);
+            if force_n > 0.0 && force_n.is_finite() {
+                self.sigma_n_per_m = one_digit(SIGMA_PER_FORCE_1_PER_M * force_n);
+            }
+        } else {
             self.notes.push("cycle_s could not be found: no sample could be read with what was guessed".to_owned());
         }
     }
@@ -84,7 +97,7 @@ impl Draft {
 
     /// Returns the robot file.
     pub fn text(&self) -> String {
-        let Self { name, interval_s, cables, paths, columns, has_pose, notes } = self;
+        let Self { name, interval_s, sigma_n_per_m, cables, paths, columns, has_pose, notes } = self;
         let mut text = String::from(
             "# A robot file to start from, made of a log. What is marked with `?` is to be checked on the machine.\n",
         );
@@ -120,8 +133,11 @@ impl Draft {
                 text += "# ? base_m = [0.0, 0.0, 0.0]     # where the cable enters the last pulley, base frame\n\
                          # ? platform_m = [0.0, 0.0, 0.0] # its attachment, platform frame\n";
             }
-            text += "pulleys = [ { wrap_deg = 90.0 } ] # ? from the sensor to the platform; { wrap_deg = 180.0, sensor = true } is a sensor pulley\n\
-                     friction = { mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.0 } # ? to start from: `fric-cli fit` finds them\n\n";
+            let _ = writeln!(
+                text,
+                "pulleys = [ {{ wrap_deg = 90.0 }} ] # ? from the sensor to the platform; {{ wrap_deg = 180.0, sensor = true }} is a sensor pulley\n\
+                 friction = {{ mu = 0.02, sigma_n_per_m = {sigma_n_per_m:?}, viscous_n_s_per_m = 0.0 }} # ? to start from: `fric-cli fit` finds them\n"
+            );
         }
         text
     }
@@ -129,6 +145,11 @@ impl Draft {
 
 fn is_one(factor: f64) -> bool {
     factor.to_bits() == 1.0_f64.to_bits()
+}
+
+/// Rounds to one digit, which is all that is known of it.
+fn one_digit(number: f64) -> f64 {
+    format!("{number:.0e}").parse().unwrap_or(number)
 }
 
 /// Rounds to three digits, as cycle times usually are.

@@ -37,7 +37,7 @@ pub fn run(arguments: &InitArguments) -> Outcome {
         Some(names) => columns::guess(names, &mut draft),
         None => topics::guess(&mut log, &mut draft)?,
     }
-    find_interval(logs, &mut draft, log.column_names().is_some())?;
+    look_at_beginning(logs, &mut draft, log.column_names().is_some())?;
     let text = draft.text();
     parsed(&text)?;
     let written = Written::new(file.complete_with(&text)?, "a robot file to start from");
@@ -56,51 +56,58 @@ fn parsed(text: &str) -> Outcome<RobotFile> {
     })
 }
 
-/// Finds the interval of the samples. Times of a CSV log that are likely no seconds get the factor of a smaller unit; of slow ones that are stated to be
+/// Finds the interval of the samples and the size of the forces. Times of a CSV log that are likely no seconds get the factor of a smaller unit; of slow ones that are stated to be
 /// seconds, or count them since 1970, only a note tells.
-fn find_interval(logs: &[PathBuf], draft: &mut Draft, has_columns: bool) -> Outcome {
-    let is_usual = |times: &Times| times.interval_s < GREAT_INTERVAL_S;
-    let times_of = |draft: &Draft| Outcome::Ok(Times::of(Log::open(logs)?, &parsed(&draft.text())?));
-    let mut times = times_of(draft)?.filter(|times| times.interval_s < GREATEST_CYCLE_S);
-    if let Some(slow) = times.as_ref().filter(|times| !is_usual(times))
+fn look_at_beginning(logs: &[PathBuf], draft: &mut Draft, has_columns: bool) -> Outcome {
+    let is_usual = |of: &Beginning| of.interval_s < GREAT_INTERVAL_S;
+    let beginning_of = |draft: &Draft| Outcome::Ok(Beginning::of(Log::open(logs)?, &parsed(&draft.text())?));
+    let mut beginning = beginning_of(draft)?.filter(|of| of.interval_s < GREATEST_CYCLE_S);
+    if let Some(slow) = beginning.as_ref().filter(|of| !is_usual(of))
         && (draft.time_states_its_unit() || SECONDS_SINCE_1970.contains(&slow.start_s))
     {
         let note = "time_s: the samples are slow for a recording of forces; is the time in milliseconds?";
         draft.notes.push(note.to_owned());
-    } else if has_columns && !times.as_ref().is_some_and(is_usual) {
+    } else if has_columns && !beginning.as_ref().is_some_and(is_usual) {
         for factor in [1e-3, 1e-6, 1e-9] {
             let scaled = draft.with_time_factor(factor);
-            if let Some(found) = times_of(&scaled)?.filter(is_usual) {
-                (*draft, times) = (scaled, Some(found));
+            if let Some(found) = beginning_of(&scaled)?.filter(is_usual) {
+                (*draft, beginning) = (scaled, Some(found));
                 break;
             }
         }
     }
-    draft.set_interval_s(times.map(|times| times.interval_s));
+    draft.set_beginning(beginning.map(|of| (of.interval_s, of.mean_force_n)));
     Ok(())
 }
 
-/// The times of a log's samples.
-struct Times {
-    /// Time of the first one, s.
+/// The beginning of a log.
+struct Beginning {
+    /// Time of the first sample, s.
     start_s: f64,
-    /// Usual interval, s.
+    /// Usual interval of the samples, s.
     interval_s: f64,
+    /// Mean magnitude of the forces of all cables, N; NaN if there are none.
+    mean_force_n: f64,
 }
 
-impl Times {
-    /// Reads the beginning of a log; `None` if it has no two samples.
+impl Beginning {
+    /// Reads it; `None` if it has no two samples.
     fn of(log: Log, robot: &RobotFile) -> Option<Self> {
         let paths = SignalPaths::of_robot(robot).ok()?;
         let mut reader = SignalReader::new(log, paths, &robot.cable_names());
         let mut start_nanos = None;
+        let (mut sum_n, mut count) = (0.0, 0.0);
         for _ in 0..MOST_ROWS {
             let Ok(Some(row)) = reader.next_row() else { break };
             start_nanos.get_or_insert(row.stamp_nanos);
+            for force_n in row.cables.iter().map(|cable| cable.sensor_force_n).filter(|force_n| force_n.is_finite()) {
+                sum_n += force_n.abs();
+                count += 1.0;
+            }
         }
         #[expect(clippy::cast_precision_loss, reason = "a time for comparison")]
         let start_s = start_nanos? as f64 * 1e-9;
         let interval_s = reader.counts(Role::Cable).interval_nanos * 1e-9;
-        (interval_s > 0.0).then_some(Self { start_s, interval_s })
+        (interval_s > 0.0).then_some(Self { start_s, interval_s, mean_force_n: sum_n / count })
     }
 }
