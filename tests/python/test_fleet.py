@@ -285,6 +285,15 @@ def test_a_fleet_without_changes_has_no_alarm():
     assert "nothing has changed" in str(found) and "Nothing: all parameters are what they were" in found.to_html()
 
 
+def test_few_logs_are_no_good_news():
+    few = table(tuple(column[:5] for column in made(0, "none")[:3]) + (0,))
+    found = fleet.trend(few)
+    assert found.alarms == () and "too few logs with a date, 6 of a robot are needed" in str(found)
+    assert "cannot tell whether anything has changed" in found.to_html()
+    undated = few.set_column(few.schema.get_field_index("start"), "start", pyarrow.nulls(few.num_rows, few.schema.field("start").type))
+    assert fleet.trend(undated, limits={"mu": (None, 0.05)}).series == ()
+
+
 def test_a_replaced_pulley_ends_a_slope():
     day, value, error, _ = made(3, "none")
     value = value + 3e-5 * np.where((day > 200) & (day < 500), day - 200, 0) / 3

@@ -5,6 +5,7 @@ use fric_log::log::Log;
 use fric_log::robot::ROBOT_FILE;
 use fric_log::signals::SignalReader;
 use fric_log::write::{LogWriter, SampledLog};
+use fric_work::verdict::counted;
 
 use crate::arguments::ConvertArguments;
 use crate::failure::{Failure, Outcome};
@@ -62,7 +63,7 @@ pub fn run(arguments: &ConvertArguments) -> Outcome {
     warn_all(&reader.log().warnings());
     end?;
     warn_all(&reader.warnings());
-    let told = format!("{count} samples of {} cables, {ROBOT_FILE} attached", names.len());
+    let told = format!("{count} samples of {}, {ROBOT_FILE} attached", counted(names.len(), "cable"));
     output::show_with("", vec![Written::new(converted.complete()?, told)], "")
 }
 

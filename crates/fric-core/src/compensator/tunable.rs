@@ -20,7 +20,8 @@ use crate::signals::bounded_elapsed;
 /// The stored friction is taken over from the old parameters; what it lacks, the new parameters learn like any compensator, over a few presliding
 /// distances f_c/σ of motion. If a cable changes from `per_pulley` to `lumped`, the stored friction is summed by its influence at the platform; in
 /// the other direction it is distributed to the pulleys in proportion to their wrap factors `2 sin(α/2)`. Effects that the old parameters do not have
-/// start as in the first cycle: a delay with the cable at rest at its position until the delay is over, inertia without acceleration.
+/// start as in the first cycle: a delay with the cable at rest at its position until the delay is over, inertia without acceleration. The time of drifts and
+/// warm-ups starts with the first of them; a second one, also of another cable, goes by the same clock.
 #[derive(Clone, Debug)]
 pub struct TunableCompensator<const CABLES: usize> {
     running: Compensator<CABLES>,

@@ -33,7 +33,7 @@ pub struct EffectRow {
     pub memory: Memory,
     /// Its influence on μ.
     pub on_mu: OnMu,
-    /// Whether it depends on the time of the run, which then starts when the effect is switched on.
+    /// Whether it depends on the time of the run. All such effects of a robot share one clock, which starts when the first of them is switched on.
     pub goes_by_time: bool,
 }
 
@@ -224,6 +224,9 @@ impl Effect {
         Acting(1 << self as u32)
     }
 }
+
+// A set of effects has 32 bits, and the word that tells two robots apart has room for no more.
+const _: () = assert!(Effect::ALL.len() <= 32);
 
 /// Writes the name that only this effect of a cable has: its kind, with a number if it is the second.
 impl fmt::Display for Effect {

@@ -191,7 +191,8 @@ fn legend(result: &FitResult) -> String {
         friction().any(|(name, _)| cable.standard_errors.get(name).is_none())
     };
     if result.cables.iter().any(is_kept) {
-        text += "\n(…) is not identified but kept from the robot file, and left out of the mean.\n";
+        let mean = if result.cables.len() > 1 { ", and left out of the mean" } else { "" };
+        let _ = writeln!(text, "\n(…) is not identified but kept from the robot file{mean}.");
     }
     text
 }

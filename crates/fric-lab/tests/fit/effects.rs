@@ -55,6 +55,24 @@ fn time_delay_is_recovered() {
     check(&fit, &[("mu", 0.02, 2e-5), ("sigma_n_per_m", 1000.0, 5.0), ("time_delay.delay_s", 0.0085, 1e-4)]);
 }
 
+/// One component of a ripple is near 0 where the phase has it so. It is known all the same: keeping it would fix the phase, and with it the period.
+#[test]
+fn a_ripple_with_a_component_near_0_has_a_true_interval() {
+    let log = log(&["friction_ripple:sin_ratio=0.3,period_m=0.08"]);
+    let effects = "effects = [{ kind = \"friction_ripple\", sin_ratio = 0.25, cos_ratio = 0.05, period_m = 0.0802 }]";
+    let fit = log.fit(&bench_with(PULLEYS, GIVEN_FRICTION, effects), &FitOptions::default()).remove(0);
+    let error = |key: &str| fit.standard_error(&parameter(&format!("friction_ripple.{key}"))).unwrap();
+    check(
+        &fit,
+        &[
+            ("friction_ripple.sin_ratio", 0.3, 4.0 * error("sin_ratio")),
+            ("friction_ripple.cos_ratio", 0.0, 4.0 * error("cos_ratio")),
+            ("friction_ripple.period_m", 0.08, 4.0 * error("period_m")),
+        ],
+    );
+    assert!(error("period_m") < 1e-3 * 0.08, "{}", error("period_m"));
+}
+
 #[test]
 fn both_at_once_are_recovered() {
     let log = log(&["stribeck:ratio=0.5,velocity_m_per_s=0.03", "time_delay:delay_s=0.004"]);
