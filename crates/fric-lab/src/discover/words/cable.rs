@@ -7,7 +7,7 @@ use fric_core::effects::Effect;
 use super::{condition, intervals, newtons, percent};
 use crate::discover::faults::Fault;
 use crate::discover::rest::places::LEAST_CONCENTRATION;
-use crate::discover::result::{DiscoverCableResult, UnexplainedResult, WhereResult};
+use crate::discover::result::{DiscoverCableResult, EffectResult, UnexplainedResult, WhereResult};
 use crate::text::{listed, quantity, significant};
 
 /// The lower end of a range counts as zero below this fraction of the upper end.
@@ -100,14 +100,20 @@ fn with_unit(number: f64, unit: &str) -> String {
     if unit == "1" { text } else { format!("{text} {unit}") }
 }
 
-/// Lists effects by kind, each kind once.
-fn names(kinds: &[&str]) -> String {
-    let is_first = |(place, kind): &(usize, &&str)| !kinds[..*place].contains(kind);
-    let name = |(_, kind): (usize, &&str)| {
-        let is_twice = kinds.iter().filter(|other| *other == kind).count() > 1;
-        format!("{kind}{}", if is_twice { " (two)" } else { "" })
+/// Lists effects by kind, each kind once, with what the log cannot tell from them.
+fn names(effects: &[&EffectResult]) -> String {
+    let is_first =
+        |(place, effect): &(usize, &&EffectResult)| !effects[..*place].iter().any(|of| of.kind == effect.kind);
+    let name = |(_, effect): (usize, &&EffectResult)| {
+        let kind = effect.kind;
+        let is_twice = effects.iter().filter(|other| other.kind == kind).count() > 1;
+        match effect.runner_up.as_ref().filter(|other| other.as_good) {
+            _ if is_twice => format!("{kind} (two)"),
+            Some(other) => format!("{kind} (or {})", other.kind),
+            None => kind.to_owned(),
+        }
     };
-    listed(&kinds.iter().enumerate().filter(is_first).map(name).collect::<Vec<String>>())
+    listed(&effects.iter().enumerate().filter(is_first).map(name).collect::<Vec<String>>())
 }
 
 impl DiscoverCableResult {
@@ -152,34 +158,35 @@ impl DiscoverCableResult {
         if let Some(missing) = &self.missing {
             return format!("Nothing can be told: {}. {}", missing.cause, missing.advice);
         }
-        let kinds: Vec<&str> = self.effects.iter().map(|effect| effect.kind).collect();
+        let all: Vec<&EffectResult> = self.effects.iter().collect();
         let wander_n = self.wander_n.filter(|wander_n| *wander_n > 0.0).map(newtons);
-        let mut text = match (self.verdict, kinds.as_slice()) {
-            ("complete", _) if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
-            ("complete", _) if self.tried.iter().any(|tried| tried.is_within_noise) => {
+        let mut text = match self.verdict {
+            "complete" if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
+            "complete" if self.tried.iter().any(|tried| tried.is_within_noise) => {
                 "With values fitted to the log, the model agrees with it to the noise, as far as the log shows what its noise is. \
                  A longer log would tell whether something small is missing."
                     .to_owned()
             }
-            ("complete", _) => {
+            "complete" => {
                 "Nothing is missing: with values fitted to the log, the model agrees with it to the noise.".to_owned()
             }
-            ("extended", kinds) => format!("The model lacks {}; with it, what is left is noise.", names(kinds)),
-            (_, kinds) => {
-                let named: Vec<&str> = kinds.iter().copied().filter(|kind| *kind != Effect::Empirical.kind()).collect();
+            "extended" => {
+                let with = if all.len() > 1 { "them" } else { "it" };
+                format!("The model lacks {}; with {with}, what is left is noise.", names(&all))
+            }
+            _ => {
+                let named: Vec<&EffectResult> =
+                    all.iter().copied().filter(|effect| effect.effect != Effect::Empirical).collect();
                 let lacks =
                     if named.is_empty() { String::new() } else { format!("The model lacks {}. ", names(&named)) };
                 let rest = lacks + "Something remains that no effect of the catalogue accounts for.";
-                if named.len() == kinds.len() {
+                if named.len() == all.len() {
                     rest
                 } else {
                     rest + " A table stands in for it, unnamed: how large it is, and where."
                 }
             }
         };
-        if kinds.len() > 1 {
-            text = text.replace("with it,", "with them,");
-        }
         if !self.faults.is_empty() {
             text += " The log has trouble of its own that is no matter of friction.";
         }
