@@ -28,6 +28,13 @@ pub fn period_of(effect: Effect) -> Option<Parameter> {
     Parameter::of(effect).find(Parameter::is_period)
 }
 
+/// Returns the range of lengths over which the scan finds a period, half a turn more than the least, so that its peak is clear.
+pub fn least_range_m(period_m: f64) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a few")]
+    let half_turns = (LEAST_HALF_TURNS + 1) as f64;
+    0.5 * half_turns * period_m
+}
+
 /// Returns the periods in the cable's length at which a residual ripples, and the circumference of the pulley whose radius is known, if the cable moves
 /// by at least that: the scan needs two turns.
 pub fn periods(record: &CableRecord<'_>, residual_n: &[f64]) -> Periods {

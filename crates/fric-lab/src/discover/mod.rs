@@ -23,6 +23,7 @@ mod effort;
 mod extended;
 mod faults;
 mod figures;
+mod lag;
 pub(crate) mod naming;
 pub(crate) mod readiness;
 mod report;

@@ -5,6 +5,7 @@ mod drift;
 mod drive;
 mod empirical;
 mod faulty;
+mod late;
 mod undetermined;
 mod wrench;
 

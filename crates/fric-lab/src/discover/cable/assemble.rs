@@ -211,7 +211,7 @@ fn finding(search: &Search<'_, '_>, named: &Named, held_out_n: Deviation) -> Fin
             effect: *effect,
             delta_bic: other_bic,
             held_out_squares: trial.held_out,
-            is_as_good: other_bic - delta_bic < STRONG_BIC,
+            is_as_good: named.is_lag_as_good || other_bic - delta_bic < STRONG_BIC,
         }
     });
     Finding { effect: named.effect, held_out_n, delta_bic, runner_up }

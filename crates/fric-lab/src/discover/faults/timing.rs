@@ -14,13 +14,13 @@ use fric_core::parameters::OFFSET;
 
 use super::{Fault, RecordingFault};
 use crate::discover::cable::given_to;
+use crate::discover::lag::{behind_lag, is_better_than_behind_lag};
 use crate::discover::naming::STRONG_BIC;
 use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::projection::{Columns, Signals, visit_less_projection};
 use crate::discover::workbench::{Model, Trial, Workbench};
 use crate::fit::{CableRecord, Parameter};
 use crate::samples::interpolated::measured;
-use crate::samples::noise::{VARIANCE_ERROR, white_noise_apart};
 use crate::samples::split::{Block, split};
 
 /// Minimum relative decrease of the held-out sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
@@ -94,12 +94,6 @@ pub struct Retimed {
     pub fault: RecordingFault,
 }
 
-/// An early reference is distinguished from a lag of the sensor by so many standard errors of the noise variance. With half as many a reference that is early by
-/// 5 ms in slow motion passes, by luck; with twice as many one of 20 ms no longer is.
-const MANY_ERRORS: f64 = 3.0;
-/// A lag has forgotten a sample of which this fraction is left. At 0.1 or 0.002 the result is the same.
-const FORGOTTEN: f64 = 0.02;
-
 /// Number of samples between which a line and a quadratic B-spline interpolate.
 const LINE_REACH: usize = 2;
 const SPLINE_REACH: usize = 3;
@@ -161,8 +155,14 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
     if !gains(&as_it_is, &shifted.trial) || !is_strong(&first, &shifted, Kind::Delay)? {
         return None;
     }
-    if delay_s < 0.0 && !case.is_no_lag(&shifted, &case.corrected(&as_it_is, Kind::Lag)?)? {
-        return None;
+    if delay_s < 0.0 {
+        let lagging = case.corrected(&as_it_is, Kind::Lag)?;
+        let bench = case.bench(&shifted.references_n);
+        let [one_n, other_n] =
+            [&shifted, &lagging].map(|of: &Corrected| case.bench(&of.references_n).residuals_n(&of.trial.values));
+        if !is_better_than_behind_lag(&bench, LINE_REACH, &one_n, &other_n, -lagging.shift.delay_s)? {
+            return None;
+        }
     }
     let fault = fault(Fault::ReferenceDelay, vec![("delay_s", delay_s)]);
     Some(Retimed { references_n: shifted.references_n, noise_reach: LINE_REACH, fault })
@@ -244,7 +244,7 @@ impl<'a> Case<'a> {
             let Step { shift: step, .. } = self.improvement(&references_n, &trial, kind)?;
             shift = Shift { delay_s: shift.delay_s + step.delay_s, skew: shift.skew + step.skew };
             references_n = match kind {
-                Kind::Lag => self.behind_lag(-shift.delay_s),
+                Kind::Lag => behind_lag(&self.record, self.record.references_n, -shift.delay_s),
                 Kind::Delay | Kind::Skew => self.shifted(shift),
             };
             trial = self.bench(&references_n).try_one(&trial.model());
@@ -254,40 +254,6 @@ impl<'a> Case<'a> {
             }
         }
         Some(Corrected { shift, references_n, trial })
-    }
-
-    /// Whether the references shifted agree better than those behind a lag, on the learned and on the held-out samples that both have. The noise that the lag
-    /// removes from the references does not count, nor what may be an error of its estimate.
-    fn is_no_lag(&self, shifted: &Corrected, lagging: &Corrected) -> Option<bool> {
-        let left_n = |of: &Corrected| self.bench(&of.references_n).residuals_n(&of.trial.values);
-        let both_n: Vec<[f64; 2]> =
-            left_n(shifted).into_iter().zip(left_n(lagging)).map(|(one, other)| [one, other]).collect();
-        let bench = self.bench(&shifted.references_n);
-        let noise_square = |which: usize, reach: usize| {
-            let left_n: Vec<f64> = both_n.iter().map(|both_n| both_n[which]).collect();
-            let noise_n = white_noise_apart(&bench.measured_of(&left_n), reach)?;
-            Some(noise_n * noise_n)
-        };
-        let measured_count = self.measured.iter().filter(|measured| **measured).count();
-        #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
-        let measured_s = self.record.interval_s * self.measured.len() as f64 / measured_count as f64;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples, not below 0")]
-        let reach = 1 + (lagging.shift.delay_s * FORGOTTEN.ln() / measured_s).max(0.0) as usize;
-        let noise = noise_square(0, LINE_REACH)?;
-        // Over so many samples a rest that is no noise looks like it.
-        let removed = (noise - noise_square(1, reach)?).max(0.0);
-        let sums = |held_out: bool| {
-            let used = bench.used(held_out);
-            let known = both_n.iter().zip(&used).filter(|([one, other], used)| **used && (one + other).is_finite());
-            known.fold([0.0; 3], |[count, one, other], ([shifted, lagging], _)| {
-                [count + 1.0, one + shifted * shifted, other + lagging * lagging]
-            })
-        };
-        let (learned, held_out) = (sums(false), sums(true));
-        let error = VARIANCE_ERROR * std::f64::consts::SQRT_2 / (learned[0] + held_out[0]).sqrt() * noise;
-        let is_better =
-            |[count, shifted, lagging]: [f64; 3]| lagging - shifted > count * (MANY_ERRORS * error - removed);
-        Some(is_better(learned) && is_better(held_out))
     }
 
     /// Whether a delay with a skew would reduce the residual notably.
@@ -357,26 +323,6 @@ impl<'a> Case<'a> {
                     given_n.copied().unwrap_or(f64::NAN)
                 };
                 *reference_n = if shift.skew == 0.0 { on_line(at, given_n) } else { on_spline(at, given_n) };
-            }
-        }
-        references_n
-    }
-
-    /// Returns the references behind a lag of first order; NaN in the samples that depend on what was before each log or a gap.
-    fn behind_lag(&self, time_constant_s: f64) -> Vec<f64> {
-        let keeps = (-self.record.interval_s / time_constant_s.max(f64::MIN_POSITIVE)).exp();
-        let mut references_n = self.record.references_n.to_vec();
-        for (start, log) in self.record.logs() {
-            // What is kept of the first sample after a gap, which stands for all before it.
-            let (mut behind_n, mut memory) = (f64::NAN, 1.0);
-            for reference_n in references_n.iter_mut().skip(start).take(log.len()) {
-                if behind_n.is_finite() && reference_n.is_finite() {
-                    behind_n = keeps * behind_n + (1.0 - keeps) * *reference_n;
-                    memory *= keeps;
-                } else {
-                    (behind_n, memory) = (*reference_n, 1.0);
-                }
-                *reference_n = if memory < FORGOTTEN { behind_n } else { f64::NAN };
             }
         }
         references_n

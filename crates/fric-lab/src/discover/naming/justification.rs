@@ -45,7 +45,7 @@ impl Search<'_, '_> {
                 .or_else(|| self.usual_instead(found, effect, inflation))
                 .or_else(|| self.straight(&others, effect, inflation));
             let with = model.clone();
-            named.push(Named { effect, with, without, runner_up: None, inflation, refusal });
+            named.push(Named { effect, with, without, runner_up: None, is_lag_as_good: false, inflation, refusal });
         }
         if named.iter().all(|named| named.refusal.is_none()) && !self.unrivalled.contains(&set) {
             match self.rival(&model, &named) {

@@ -15,6 +15,7 @@ mod entry;
 pub mod evidence;
 mod fits;
 pub mod justification;
+mod late;
 pub mod projection;
 mod rivals;
 mod steadiness;
@@ -66,6 +67,8 @@ pub struct Named {
     pub without: Trial,
     /// The best other effect in its place.
     pub runner_up: Option<(Effect, Trial)>,
+    /// Whether that is a lag of the sensor which, seen behind the lag, explains as much.
+    pub is_lag_as_good: bool,
     /// Factor by which memory in the residual weakens the evidence, at least 1.
     pub inflation: f64,
     /// The reason why the effect cannot stay.
@@ -241,6 +244,9 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         for (place, named) in named.iter_mut().enumerate() {
             named.runner_up = self.alternative(&found, place);
+            if let Some(lagging) = self.lag_in_place_of(&found, named.effect) {
+                (named.runner_up, named.is_lag_as_good) = (Some((Effect::SensorLag, lagging)), true);
+            }
         }
         let tried = self.tried(&found);
         self.polish(&found);

@@ -45,8 +45,10 @@ impl EffectResult {
         let RunnerUpResult { kind, delta_bic, held_out_rms_n, as_good, effect } = self.runner_up.as_ref()?;
         let rms = held_out_rms_n.map(newtons)?;
         if *as_good {
+            let louder =
+                if *effect == Effect::SensorLag { ": undoing a lag makes the sensor's noise louder" } else { "" };
             return Some(format!(
-                "the log cannot tell it from {kind} (rms {rms}); to tell them apart record {}",
+                "the log cannot tell it from {kind} (rms {rms}{louder}); to tell them apart record {}",
                 excitation([self.effect, *effect])
             ));
         }

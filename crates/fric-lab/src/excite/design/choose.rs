@@ -9,12 +9,13 @@ const ROUNDS: usize = 6;
 const WORTH: f64 = 1e-3;
 
 /// Returns the indices of the pieces of a run that takes no longer than `time_s`; a piece may occur several times. `durations_s` holds the durations
-/// of the pieces.
-pub fn choose(tests: &Tests, durations_s: &[f64], time_s: f64) -> Vec<usize> {
-    let mut chosen: Vec<usize> = Vec::new();
+/// of the pieces. The piece `needed` is among them, whatever it is worth.
+pub fn choose(tests: &Tests, durations_s: &[f64], time_s: f64, needed: Option<usize>) -> Vec<usize> {
+    let mut chosen: Vec<usize> = needed.into_iter().collect();
+    let kept = chosen.len();
     for _ in 0..ROUNDS {
         fill(tests, durations_s, time_s, &mut chosen);
-        if !exchange(tests, durations_s, time_s, &mut chosen) {
+        if !exchange(tests, durations_s, time_s, &mut chosen, kept) {
             break;
         }
     }
@@ -33,10 +34,10 @@ fn fill(tests: &Tests, durations_s: &[f64], time_s: f64, chosen: &mut Vec<usize>
     }
 }
 
-/// Exchanges each piece for the best in its place. Returns whether any was exchanged.
-fn exchange(tests: &Tests, durations_s: &[f64], time_s: f64, chosen: &mut [usize]) -> bool {
+/// Exchanges each piece but the first `kept` for the best in its place. Returns whether any was exchanged.
+fn exchange(tests: &Tests, durations_s: &[f64], time_s: f64, chosen: &mut [usize], kept: usize) -> bool {
     let mut improved = false;
-    for slot in 0..chosen.len() {
+    for slot in kept..chosen.len() {
         let mut others = chosen.to_vec();
         let present = others.swap_remove(slot);
         let sums = sums_of(tests, &others);

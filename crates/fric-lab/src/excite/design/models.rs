@@ -11,6 +11,7 @@ use super::hypothesis::{Hypothesis, Prediction, with_typical, without};
 use super::studio::Studio;
 use super::{Aim, Goal, KnownParameter, Question};
 use crate::candidates::catalogue::has;
+use crate::candidates::ripple::period_of;
 use crate::discover::naming::STRONG_BIC;
 use crate::excite::ExcitationError;
 use crate::fit::{CableRecord, Measurements, Parameter};
@@ -34,6 +35,16 @@ pub(super) enum QuestionModels {
 }
 
 impl QuestionModels {
+    /// Returns the greatest period of the ripples that the cable may have, m; `None` if there is none.
+    pub(super) fn greatest_period_m(&self) -> Option<f64> {
+        let Self::Separate { right, .. } = self else { return None };
+        let periods_m = right.iter().flatten().flat_map(|right| {
+            let acting = Effect::CATALOGUE.iter().filter(|effect| has(**effect, &right.values));
+            acting.filter_map(|effect| Some(right.values[period_of(*effect)?.place()]))
+        });
+        periods_m.reduce(f64::max)
+    }
+
     /// Drops the question whether the second effect, if it is the true one, can be told from the first. No run answers that if the first does the same
     /// wherever it is weak enough, as a bent sensor that is nearly straight does what a gain does. Returns `None` if nothing is to be dropped.
     pub(super) fn ask_for_first_alone(&mut self) -> Option<()> {

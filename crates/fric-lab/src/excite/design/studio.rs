@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::criterion::{Sums, objective};
 use super::models::QuestionModels;
 use super::{Experiment, Forecast, Goal, KnownParameter, Question, choose, pieces, predicted};
+use crate::candidates::ripple::least_range_m;
 use crate::discover::naming::STRONG_BIC;
 use crate::excite::{Excitation, ExcitationError, ExcitationOptions};
 use crate::fit::{Measurements, Progress, Reference};
@@ -182,7 +183,7 @@ impl<'a> Studio<'a> {
     fn chosen(&self, cases: &[QuestionModels]) -> Result<Excitation, ExcitationError> {
         let tests = self.tests(cases, &self.library)?;
         let time_s = self.duration_s - self.lead_in_s;
-        let chosen = choose::choose(&tests, &self.times_s, time_s);
+        let chosen = choose::choose(&tests, &self.times_s, time_s, self.needed_piece(cases, time_s));
         let pieces: Vec<Piece> = chosen.iter().filter_map(|place| self.pieces.get(*place)).copied().collect();
         let mut by_load = pieces.clone();
         by_load.sort_by(|one, other| one.load_share.total_cmp(&other.load_share));
@@ -202,6 +203,30 @@ impl<'a> Studio<'a> {
             }
         }
         best.map(|(_, run)| run).ok_or_else(|| self.broken_off())
+    }
+
+    /// Returns the shortest piece in which each cable that may have a ripple turns as often as the discovery needs to find its period; `None` if there is no
+    /// ripple, or no such piece.
+    fn needed_piece(&self, cases: &[QuestionModels], time_s: f64) -> Option<usize> {
+        let ranges_m: Vec<(usize, f64)> = self
+            .questions
+            .iter()
+            .zip(cases)
+            .filter_map(|(question, case)| Some((question.cable, least_range_m(case.greatest_period_m()?))))
+            .collect();
+        let reaches = |piece: usize, (cable, range_m): &(usize, f64)| {
+            let record = self.library.cable(*cable)?;
+            let (_, rows) = record.logs().nth(piece)?;
+            let lengths_m = || rows.iter().map(|row| row.signals.length_m).filter(|length_m| length_m.is_finite());
+            let [least_m, greatest_m] =
+                [lengths_m().fold(f64::INFINITY, f64::min), lengths_m().fold(f64::NEG_INFINITY, f64::max)];
+            Some(greatest_m - least_m >= *range_m)
+        };
+        let fits = |piece: &usize| {
+            self.times_s[*piece] <= time_s && ranges_m.iter().all(|needed| reaches(*piece, needed) == Some(true))
+        };
+        let reaching = (0..self.times_s.len()).filter(|_| !ranges_m.is_empty()).filter(fits);
+        reaching.min_by(|one, other| self.times_s[*one].total_cmp(&self.times_s[*other]))
     }
 
     fn cannot_tell(&self, forecasts: &[Forecast]) -> ExcitationError {

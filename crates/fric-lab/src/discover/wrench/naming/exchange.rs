@@ -77,6 +77,7 @@ impl Search<'_> {
                 let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
                 let refusal = match self.refused.get(&candidate) {
                     _ if self.is_at_end(candidate, &with) => Refusal::AtBound,
+                    _ if !self.is_more_than_usual(candidate, &with) => Refusal::Usual,
                     Some(refusal) if *refusal != Refusal::Weak => *refusal,
                     _ if delta_bic >= -STRONG_BIC => Refusal::Weak,
                     _ if trial.held_out - with.held_out <= self.least_gain(&trial) => Refusal::Small,
