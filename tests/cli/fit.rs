@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::logs::{with_data, without, without_reference_of};
 use super::replay::shape;
 use super::simulate::bench_robot;
-use super::support::{Place, Run, assert_close, example_robot, result_of};
+use super::support::{Place, Run, assert_close, example_robot, result_of, unwrapped};
 
 /// A log of a robot, simulated; made once for each cell.
 fn simulated(cell: &'static OnceLock<Vec<u8>>, robot: &str, options: &[&str]) -> &'static [u8] {
@@ -485,4 +485,17 @@ fn stdout_is_nothing_but_json_where_it_is_asked_for() {
     assert_shape(&result_of(run.stdout.as_bytes()), &[&CABLE, &FORCES]);
     assert!(run.stderr.contains("winch") && run.stderr.contains("F_pv"), "{run:#?}");
     assert_eq!(place.names(), ["fitted.toml", "guess.toml", "log.mcap"]);
+}
+
+/// The headline says what is fitted, friction or not.
+#[test]
+fn what_is_fitted_is_told() {
+    let place = bench();
+    let headline = |arguments: &[&str]| {
+        unwrapped(&fit(&place, &[&["log.mcap", "--model", "guess.toml"], arguments].concat()).stdout)
+    };
+    let told = headline(&[]);
+    assert!(told.contains("Friction is fitted on 1 cable"), "{told}");
+    let told = headline(&["--parameters", "offset_n"]);
+    assert!(told.contains("Only offset_n is fitted; the model leaves"), "{told}");
 }

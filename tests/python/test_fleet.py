@@ -288,8 +288,8 @@ def test_a_fleet_without_changes_has_no_alarm():
 def test_few_logs_are_no_good_news():
     few = table(tuple(column[:5] for column in made(0, "none")[:3]) + (0,))
     found = fleet.trend(few)
-    assert found.alarms == () and "too few logs with a date, 6 of a robot are needed" in str(found)
-    assert "cannot tell whether anything has changed" in found.to_html()
+    assert found.alarms == () and "too few logs with a date, 6 of each robot are needed" in str(found)
+    assert "cannot tell whether anything has changed" in found.to_html() and "Nothing: all parameters" not in found.to_html()
     undated = few.set_column(few.schema.get_field_index("start"), "start", pyarrow.nulls(few.num_rows, few.schema.field("start").type))
     assert fleet.trend(undated, limits={"mu": (None, 0.05)}).series == ()
 

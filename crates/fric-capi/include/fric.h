@@ -83,7 +83,7 @@
 /// The tendon reverses: friction at the base plate was against this motion before. The goal is reached.
 #define FRIC_COMMAND_REVERSAL 16
 
-/// Some hole still has the friction of the previous motion, so that much tension moves little. The goal is reached.
+/// Some hole still has the friction of the previous motion, so the tip hardly moves until the tension has changed by the dead band. The goal is reached.
 #define FRIC_COMMAND_DEAD_BAND 32
 
 /// The flags with which the command does not reach the goal.

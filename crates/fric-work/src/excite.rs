@@ -64,7 +64,7 @@ fn in_figures(goal: &Goal) -> String {
         Goal::Separated { effects, delta_bic } => {
             let of = |(effect, delta_bic): (&Option<Effect>, &Option<f64>)| match (delta_bic, effect) {
                 (Some(delta_bic), _) => Some(format!("ΔBIC {delta_bic:.0} if it is {}", kind_or_none(*effect))),
-                (None, Some(effect)) => Some(format!("no evidence if it is {effect}")),
+                (None, Some(effect)) => Some(format!("too little evidence if it is {effect}")),
                 (None, None) => None,
             };
             effects.iter().zip(delta_bic).filter_map(of).collect::<Vec<String>>().join(", ")

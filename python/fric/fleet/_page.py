@@ -10,7 +10,7 @@ from ._alarms import day
 from ._chart import chart
 from ._run import told_once
 from ._trend import Alarm, Series, Trend
-from ._words import between, headline, provenance, remarks, since, verdict
+from ._words import TOO_FEW, between, headline, may_show_a_change, provenance, remarks, since, verdict
 
 # Same style as the other pages of fric.
 _STYLE = """
@@ -79,6 +79,8 @@ def _made() -> str:
 
 
 def _overview(trend: Trend) -> str:
+    if not trend.alarms and not may_show_a_change(trend):
+        return f"<h2>What has changed</h2><p>Nothing can be told: {TOO_FEW}.</p>"
     if not trend.alarms:
         return '<h2>What has changed</h2><p class="good">Nothing: all parameters are what they were, within their scatter.</p>'
     rows = [

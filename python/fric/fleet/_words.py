@@ -16,7 +16,7 @@ from ._run import told_once
 from ._trend import Alarm, Change, Series, Trend
 
 FORMAT = "fric-trend/1"
-_TOO_FEW = f"too few logs with a date, {2 * LEAST_LOGS} of a robot are needed"
+TOO_FEW = f"too few logs with a date, {2 * LEAST_LOGS} of each robot are needed"
 
 
 def between(change: Change) -> str:
@@ -37,19 +37,23 @@ def headline(trend: Trend) -> str:
     examined = f"{counted(trend.logs, 'log')} of {counted(robots, 'robot')}, {len(trend.series)} series by fric {trend.operation}"
     if trend.alarms:
         return f"{examined}: {counted(len(trend.alarms), 'alarm')}"
-    return f"{examined}: {'nothing has changed' if _may_show_a_change(trend) else _TOO_FEW}"
+    return f"{examined}: {'nothing has changed' if may_show_a_change(trend) else TOO_FEW}"
 
 
-def _may_show_a_change(trend: Trend) -> bool:
-    return any(len(one.values) >= 2 * LEAST_LOGS for one in trend.series)
+def may_show_a_change(trend: Trend) -> bool:
+    """Whether every robot has as many logs as a change needs."""
+    logs: dict[str, int] = {}
+    for one in trend.series:
+        logs[one.robot] = max(logs.get(one.robot, 0), len(one.values))
+    return bool(logs) and min(logs.values()) >= 2 * LEAST_LOGS
 
 
 def verdict(trend: Trend) -> str:
     """Returns the result in a sentence for people who do not run the robots."""
     robots = list(dict.fromkeys(one.robot for one in trend.series))
     fleet = f"{len(robots)} robots" if len(robots) != 1 else "the robot"
-    if not trend.alarms and not _may_show_a_change(trend):
-        return f"This cannot tell whether anything has changed: {_TOO_FEW}."
+    if not trend.alarms and not may_show_a_change(trend):
+        return f"This cannot tell whether anything has changed: {TOO_FEW}."
     if not trend.alarms:
         return f"Nothing has changed on {fleet}."
     places = list(dict.fromkeys(f"{one.robot} {one.cable}" for one in trend.alarms))

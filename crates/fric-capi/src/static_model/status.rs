@@ -32,7 +32,7 @@ pub const FRIC_COMMAND_OUT_OF_REACH: u32 = 4;
 pub const FRIC_COMMAND_HELD: u32 = 8;
 /// The tendon reverses: friction at the base plate was against this motion before. The goal is reached.
 pub const FRIC_COMMAND_REVERSAL: u32 = 16;
-/// Some hole still has the friction of the previous motion, so that much tension moves little. The goal is reached.
+/// Some hole still has the friction of the previous motion, so the tip hardly moves until the tension has changed by the dead band. The goal is reached.
 pub const FRIC_COMMAND_DEAD_BAND: u32 = 32;
 /// The flags with which the command does not reach the goal.
 pub const FRIC_COMMAND_MISSED: u32 = 7;

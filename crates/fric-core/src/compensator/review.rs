@@ -15,8 +15,8 @@ use crate::numbers::lanes::Block;
 use crate::signals::doubt::{BEYOND_RATIO, LONGEST_LIE_S, Shown, Stored, TOLERATED_N, review_friction, review_sensor};
 use crate::signals::{GREATEST_MOTION, checked_cycles, condition};
 
-/// Effects that, over the run or with the load, can make a bearing's friction smaller than its parameters say, and then at any time. For all others what a
-/// bearing holds is computed with the greatest μ that they allow: where they lower μ, `UNSETTLED` comes later.
+/// Effects that can make a bearing hold less than its parameters say: over time (`friction_drift`) or with the load (`load_nonlinearity`). Other effects that
+/// lower μ are not counted: `UNSETTLED` then comes later.
 pub(super) const BEARS_OTHERWISE: Acting = friction_drift::ACTS.and(load_nonlinearity::ACTS);
 
 impl<const CABLES: usize> Compensator<CABLES> {

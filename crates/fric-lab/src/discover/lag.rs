@@ -1,4 +1,4 @@
-//! Tells a lag of first order of the force sensor from what looks like it: a reference that is early, or a motion that is known too late.
+//! Tells a lag of first order of the force sensor from what looks like it: a reference that is early, or a motion that is known too early.
 //!
 //! A model that undoes the lag makes the noise louder that enters behind the filter, so its residual says little against it. What it leaves is therefore
 //! put behind the same lag again: that is the residual of the sensor's own signal, with the reference and the friction behind the lag.
@@ -7,15 +7,15 @@ use crate::discover::workbench::Workbench;
 use crate::samples::cable::CableRecord;
 use crate::samples::noise::{VARIANCE_ERROR, white_noise_apart};
 
-/// A model is distinguished from a lag of the sensor by so many standard errors of the noise variance. With half as many a reference that is early by
-/// 5 ms in slow motion passes, by luck; with twice as many one of 20 ms no longer is.
+/// A model is distinguished from a lag of the sensor by so many standard errors of the noise variance, tried on references that are early: with half as many,
+/// a lag of 5 ms in slow motion is taken for an early reference, by luck; with twice as many, a reference that is early by 20 ms is taken for a lag.
 const MANY_ERRORS: f64 = 3.0;
 /// A lag has forgotten a sample of which this fraction is left. At 0.1 or 0.002 the result is the same.
 const FORGOTTEN: f64 = 0.02;
 
-/// Returns a series of a cable's samples behind a lag of first order; NaN in the samples that depend on what was before each log or a gap.
-pub fn behind_lag(record: &CableRecord<'_>, series: &[f64], time_constant_s: f64) -> Vec<f64> {
-    let keeps = (-record.interval_s / time_constant_s.max(f64::MIN_POSITIVE)).exp();
+/// Returns a series of a cable's samples behind a lag of first order that keeps the fraction `keeps` from one sample to the next; NaN in the samples that
+/// depend on what was before each log or a gap.
+pub fn behind_lag(record: &CableRecord<'_>, series: &[f64], keeps: f64) -> Vec<f64> {
     let mut lagging = series.to_vec();
     for (start, log) in record.logs() {
         // What is kept of the first sample after a gap, which stands for all before it.
@@ -34,11 +34,11 @@ pub fn behind_lag(record: &CableRecord<'_>, series: &[f64], time_constant_s: f64
 }
 
 /// Whether a model's residual is smaller than one behind a lag, on the learned and on the held-out samples that both have. The noise that the lag removes
-/// does not count, nor what may be an error of its estimate. `reach` is the number of consecutive samples that share noise in the first residual; `None` if
-/// the noise cannot be estimated.
+/// does not count, nor what may be an error of its estimate. `reaches` are the numbers of consecutive samples that share noise in the first residual, and in
+/// the second without the lag; `None` if the noise cannot be estimated.
 pub fn is_better_than_behind_lag(
     bench: &Workbench<'_>,
-    reach: usize,
+    [reach, reach_before_lag]: [usize; 2],
     left_n: &[f64],
     lagging_n: &[f64],
     time_constant_s: f64,
@@ -51,7 +51,7 @@ pub fn is_better_than_behind_lag(
     #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
     let measured_s = bench.record.interval_s * bench.measured.len() as f64 / measured_count as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples, not below 0")]
-    let lag_reach = 1 + (-time_constant_s * FORGOTTEN.ln() / measured_s).max(0.0) as usize;
+    let lag_reach = reach_before_lag + (-time_constant_s * FORGOTTEN.ln() / measured_s).max(0.0) as usize;
     let noise = noise_square(left_n, reach)?;
     // Over so many samples a rest that is no noise looks like it.
     let removed = (noise - noise_square(lagging_n, lag_reach)?).max(0.0);

@@ -52,7 +52,7 @@ pub struct Finding {
     pub held_out_n: Deviation,
     /// BIC with the effect minus BIC without it; negative favours the effect.
     pub delta_bic: f64,
-    /// The best other effect in its place, by BIC against no effect there.
+    /// The best other effect in its place, by BIC against no effect there, or a lag of the sensor that is as good in spite of its BIC.
     pub runner_up: Option<RunnerUp>,
 }
 

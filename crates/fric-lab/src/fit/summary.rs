@@ -327,7 +327,7 @@ fn undetermined(result: &FitResult) -> String {
                  parameter has nothing to explain.{}",
                 shown_name(&parameter),
                 listed(&cables, result),
-                if parameter.place() == MU {
+                if parameter.place() == MU && value <= parameter.row().min {
                     "\n  Does the length grow where it should shrink, or is a force at the winch taken for one at the platform?"
                 } else {
                     ""

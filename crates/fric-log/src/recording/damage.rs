@@ -242,7 +242,8 @@ impl FileDamage {
         if let Some((from, to)) = self.log_time_nanos {
             let from = seconds_after(self.start_time_nanos, from);
             let to = seconds_after(self.start_time_nanos, to);
-            write!(f, "{separator}between {from:.3} s and {to:.3} s after the start")?;
+            let unknown = if separator == "; " { "messages may be missing " } else { "" };
+            write!(f, "{separator}{unknown}between {from:.3} s and {to:.3} s after the start")?;
         }
         Ok(())
     }

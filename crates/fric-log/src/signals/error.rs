@@ -75,7 +75,7 @@ pub enum SignalError {
     #[error(
         "no row of the log is {}: its {} is {row_s:.3} s after its first; {}",
         Between(part),
-        if *has_gap { "next" } else { "last" },
+        if *is_followed { "next" } else { "last" },
         advice::PART
     )]
     NothingInPart {
@@ -83,8 +83,8 @@ pub enum SignalError {
         part: Part,
         /// Time of the last row that was read, s after the first.
         row_s: f64,
-        /// Whether this row is after the part, which is in a gap of the log.
-        has_gap: bool,
+        /// Whether this row is after the part, which lies between two rows.
+        is_followed: bool,
     },
     /// There is a force but no length.
     #[error("the messages on `{topic}` bring forces but no cable lengths (`position`); {}", advice::LENGTH)]

@@ -220,8 +220,8 @@ impl SignalReader {
             return Ok(None);
         }
         let Progress { part, last_s: row_s, .. } = self.progress;
-        let has_gap = part.end_s.is_some_and(|end_s| row_s >= end_s);
-        Err(SignalError::NothingInPart { part, row_s, has_gap })
+        let is_followed = part.end_s.is_some_and(|end_s| row_s >= end_s);
+        Err(SignalError::NothingInPart { part, row_s, is_followed })
     }
 
     /// Returns the prepared row, with the pose from its lengths if requested.

@@ -196,9 +196,9 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     let left = share_left("the force error", &cables).or_else(|| wrench_left(&wrench));
     let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
     let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
-    let fitted = fitted(result);
+    let (fitted, it) = fitted(result);
     let worse = worse(&all);
-    let it = if worse.is_some() { "elsewhere it" } else { "it" };
+    let it = if worse.is_some() { format!("elsewhere {it}") } else { it.to_owned() };
     let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}."));
     let (tone, sentence) = match worse {
         Some(worse) => (Tone::Bad, format!("{worse} {left}")),
@@ -232,24 +232,23 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     Verdict { tone, sentence, todo }
 }
 
-/// Returns what is fitted on how many cables, as a clause.
-fn fitted(result: &FitResult) -> String {
+/// Returns what is fitted, as a clause, and the word for it.
+fn fitted(result: &FitResult) -> (String, &'static str) {
     let fitted_of = |cable: &FitCableResult| -> Vec<Parameter> {
-        cable.standard_errors.0.iter().filter_map(|(name, _)| Parameter::named(name)).collect()
+        let of_logs = cable.per_log.iter().flat_map(|log| &log.standard_errors.0);
+        cable.standard_errors.0.iter().chain(of_logs).filter_map(|(name, _)| Parameter::named(name)).collect()
     };
     let is_friction = |of: &Parameter| of.is_friction() && of.place() != OFFSET;
     let with_friction = result.cables.iter().filter(|cable| fitted_of(cable).iter().any(is_friction)).count();
     if with_friction > 0 {
-        return format!("Friction is fitted on {}", counted(with_friction, "cable"));
+        return (format!("Friction is fitted on {}", counted(with_friction, "cable")), "it");
     }
     let mut names: Vec<String> = result.cables.iter().flat_map(fitted_of).map(|of| of.to_string()).collect();
     names.sort_unstable();
     names.dedup();
-    if names.is_empty() {
-        "Nothing is fitted".to_owned()
-    } else {
-        format!("No friction is fitted, only {}", listed(&names))
-    }
+    let fitted =
+        if names.is_empty() { "Nothing is fitted".to_owned() } else { format!("Only {} is fitted", listed(&names)) };
+    (fitted, "the model")
 }
 
 /// Returns the verdict on a hysteresis: the remaining fraction of its width.

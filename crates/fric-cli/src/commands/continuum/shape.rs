@@ -52,7 +52,7 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
         error => about(&paths.run, error),
     })?;
     if picked.is_empty() {
-        warn("no sample has friction of both directions beyond doubt: no shape is shown");
+        warn("at no sample does friction clearly act in both directions: no shape is shown");
     }
     let result = ShapeResult::new(model.name(), params, &run, guarded.as_ref(), &ways, &picked);
     warn_all(&result.warnings(&ways));

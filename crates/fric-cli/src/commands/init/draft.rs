@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use fric_core::parameters::{FRICTION, ParameterRow, SIGMA};
 use fric_core::robot::file::TIME_COLUMN;
 use fric_core::text_file::name_problem;
 use fric_lab::text::wrapped;
@@ -75,8 +76,10 @@ impl Draft {
     pub fn set_beginning(&mut self, beginning: Option<(f64, f64)>) {
         if let Some((interval_s, force_n)) = beginning {
             self.interval_s = Some(interval_s);
-            if force_n > 0.0 && force_n.is_finite() {
-                self.sigma_n_per_m = one_digit(SIGMA_PER_FORCE_1_PER_M * force_n);
+            let sigma_n_per_m = one_digit(SIGMA_PER_FORCE_1_PER_M * force_n);
+            let ParameterRow { min, max, .. } = FRICTION[SIGMA];
+            if (min..=max).contains(&sigma_n_per_m) {
+                self.sigma_n_per_m = sigma_n_per_m;
             }
         } else {
             self.notes.push("cycle_s could not be found: no sample could be read with what was guessed".to_owned());
@@ -155,4 +158,23 @@ fn one_digit(number: f64) -> f64 {
 /// Rounds to three digits, as cycle times usually are.
 fn rounded(interval_s: f64) -> f64 {
     format!("{interval_s:.2e}").parse().unwrap_or(interval_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Draft;
+
+    #[test]
+    fn the_stiffness_to_start_from_goes_with_the_force() {
+        let text = |force_n| {
+            let mut draft = Draft::new("winch".to_owned());
+            draft.cables.push("cable1".to_owned());
+            draft.set_beginning(Some((1e-3, force_n)));
+            draft.text()
+        };
+        assert!(text(523.0).contains("sigma_n_per_m = 50000.0,"), "{}", text(523.0));
+        for force_n in [f64::NAN, 0.0, 1e-9] {
+            assert!(text(force_n).contains("sigma_n_per_m = 1000.0,"), "{}", text(force_n));
+        }
+    }
 }

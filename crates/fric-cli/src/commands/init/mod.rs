@@ -23,7 +23,7 @@ const GREATEST_CYCLE_S: f64 = 10.0;
 /// Times from 2001 to 2100, counted from 1970, s.
 const SECONDS_SINCE_1970: Range<f64> = 1e9..4.1e9;
 
-/// Number of samples that suffices to determine their interval.
+/// Number of samples that suffices to determine their interval and the size of the forces.
 const MOST_ROWS: usize = 2000;
 
 /// Runs the command.

@@ -160,7 +160,7 @@ pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
         let bench = case.bench(&shifted.references_n);
         let [one_n, other_n] =
             [&shifted, &lagging].map(|of: &Corrected| case.bench(&of.references_n).residuals_n(&of.trial.values));
-        if !is_better_than_behind_lag(&bench, LINE_REACH, &one_n, &other_n, -lagging.shift.delay_s)? {
+        if !is_better_than_behind_lag(&bench, [LINE_REACH, 1], &one_n, &other_n, -lagging.shift.delay_s)? {
             return None;
         }
     }
@@ -244,7 +244,10 @@ impl<'a> Case<'a> {
             let Step { shift: step, .. } = self.improvement(&references_n, &trial, kind)?;
             shift = Shift { delay_s: shift.delay_s + step.delay_s, skew: shift.skew + step.skew };
             references_n = match kind {
-                Kind::Lag => behind_lag(&self.record, self.record.references_n, -shift.delay_s),
+                Kind::Lag => {
+                    let keeps = (self.record.interval_s / shift.delay_s.min(-f64::MIN_POSITIVE)).exp();
+                    behind_lag(&self.record, self.record.references_n, keeps)
+                }
                 Kind::Delay | Kind::Skew => self.shifted(shift),
             };
             trial = self.bench(&references_n).try_one(&trial.model());

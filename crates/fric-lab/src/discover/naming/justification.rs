@@ -21,9 +21,9 @@ const END_RATIO: f64 = 0.01;
 /// Maximum relative scatter (rms) of an effect's size between operating conditions. Below it, one constant explains at least four fifths of what one
 /// size per condition would.
 const MOST_SCATTER_RATIO: f64 = 0.5;
-/// Maximum fraction of the excess above the noise that the effect may explain if its size varied with a condition,
+/// An effect is bent if a size that varies with a condition would explain more than this fraction of the excess above the noise.
 const MOST_BENT: f64 = 0.5;
-/// unless its size would vary by less than this fraction over the condition. Then the name is right, and the rest is another, smaller effect.
+/// It is not if that size varies by less than this fraction over the condition. Then the name is right, and the rest is another, smaller effect.
 const MOST_TILT: f64 = 0.2;
 
 impl Search<'_, '_> {

@@ -6,7 +6,8 @@
 //! 2. *Leave.* An effect stays if all of the following hold: the evidence for it is strong; it is large enough to matter; its parameters keep clear
 //!    of their bounds and can be distinguished from the others; it has one size in every operating condition; and neither an unnamed law nor an
 //!    effect of typical size makes it superfluous. An effect that cannot stay is set aside, and the next one is tried.
-//! 3. *Exchange.* Each remaining effect is compared with every other effect in its place.
+//! 3. *Exchange.* Each remaining effect is compared with every other effect in its place. A delay is finally compared with a lag of the sensor, which it
+//!    may be although the lag leaves more noise.
 //! 4. *Enter together.* If nothing changes any more and something is left, two or three effects enter that can stay only beside each other.
 //!
 //! Effects that were set aside are tried again beside everything that was found since.
@@ -67,7 +68,7 @@ pub struct Named {
     pub without: Trial,
     /// The best other effect in its place.
     pub runner_up: Option<(Effect, Trial)>,
-    /// Whether that is a lag of the sensor which, seen behind the lag, explains as much.
+    /// Whether that is a lag of the sensor which, seen behind the lag, explains as much, although its BIC is worse.
     pub is_lag_as_good: bool,
     /// Factor by which memory in the residual weakens the evidence, at least 1.
     pub inflation: f64,
@@ -383,10 +384,12 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut rivals = self.round(&others);
         rivals
             .retain(|(other, _)| *other != effect && (beyond.contains_key(other) || !self.refused.contains_key(other)));
-        let closest = rivals.iter().min_by(|(_, one), (_, other)| one.training.total_cmp(&other.training))?;
-        let memory = inflation(self.bench, &closest.1, &fitted(closest.0));
+        let memory = inflation(self.bench, &self.fit(found), &fitted(effect));
         let evidence = |(_, trial): &(Effect, Trial)| self.delta_bic(&without, trial, memory);
-        rivals.into_iter().min_by(|one, other| evidence(one).total_cmp(&evidence(other)))
+        let squares = |(_, trial): &(Effect, Trial)| trial.training;
+        rivals.into_iter().min_by(|one, other| {
+            evidence(one).total_cmp(&evidence(other)).then(squares(one).total_cmp(&squares(other)))
+        })
     }
 
     /// Returns the candidates that help a model but do not suffice, the best first. Where only the error of the noise's estimate leaves room for them,

@@ -1,6 +1,6 @@
 //! Entry of two or three effects at once.
 //!
-//! Each of several effects may look like something else as long as the others are missing. An asymmetry of the friction and a drift of the sensor, of
+//! Of several effects, each alone can be mistaken for something else. An asymmetry of the friction and a drift of the sensor, of
 //! like size, leave each other an error that changes with the time and with the direction; alone, neither helps on the samples held out. So where no
 //! candidate may enter alone, sets of two and three are tried, including what was refused. To choose among the thousands of them, each candidate is taken
 //! for the force that it adds where it fits best alone, and the sums of squares of all sets follow from the inner products of these forces. The memory

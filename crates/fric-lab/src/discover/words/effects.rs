@@ -174,10 +174,13 @@ impl CommonEffect {
         };
         let values: Vec<String> = self.parameters.iter().map(CommonParameter::in_words).collect();
         let values = stating_intervals(format!("{} on {on}: {}", self.kind, values.join(", ")));
-        // The wrench does not show the inner tension, with which all gains go.
+        // The wrench cannot show a common error of all gains, which changes the inner tension only.
         if result.wrench.is_some() && self.kind == Effect::SensorGain.kind() && !others.is_empty() {
             let sensors = if others.len() == 1 { "sensor" } else { "sensors" };
-            return format!("{values}. They rest on the {sensors} of {}, taken to be right", listed(&others));
+            return format!(
+                "{values}. These gains are relative to the {sensors} of {}, taken to be right",
+                listed(&others)
+            );
         }
         values
     }

@@ -9,9 +9,14 @@ const ROUNDS: usize = 6;
 const WORTH: f64 = 1e-3;
 
 /// Returns the indices of the pieces of a run that takes no longer than `time_s`; a piece may occur several times. `durations_s` holds the durations
-/// of the pieces. The piece `needed` is among them, whatever it is worth.
-pub fn choose(tests: &Tests, durations_s: &[f64], time_s: f64, needed: Option<usize>) -> Vec<usize> {
-    let mut chosen: Vec<usize> = needed.into_iter().collect();
+/// of the pieces. The `needed` ones are among them as far as they fit, whatever they are worth.
+pub fn choose(tests: &Tests, durations_s: &[f64], time_s: f64, needed: &[usize]) -> Vec<usize> {
+    let mut chosen: Vec<usize> = Vec::new();
+    for place in needed {
+        if fitting(durations_s, &chosen, time_s).contains(place) {
+            chosen.push(*place);
+        }
+    }
     let kept = chosen.len();
     for _ in 0..ROUNDS {
         fill(tests, durations_s, time_s, &mut chosen);
@@ -82,4 +87,18 @@ fn with_piece(tests: &Tests, sums: &[Vec<Sums>], place: usize) -> f64 {
     };
     let sums: Vec<Vec<Sums>> = tests.iter().zip(sums).map(of_question).collect();
     objective(tests, &sums)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::choose;
+
+    #[test]
+    fn a_needed_piece_is_chosen_if_it_fits() {
+        let durations_s = [3.0, 4.0, 6.0];
+        let chosen = choose(&Vec::new(), &durations_s, 10.0, &[2]);
+        let taken_s: f64 = chosen.iter().map(|place| durations_s[*place]).sum();
+        assert!(chosen.contains(&2) && taken_s <= 10.0, "{chosen:?}");
+        assert!(!choose(&Vec::new(), &durations_s, 5.0, &[2]).contains(&2));
+    }
 }

@@ -120,7 +120,7 @@ impl Test {
     }
 }
 
-/// Everything that a run is to answer: the tests of each question, of which the hardest counts.
+/// Everything that a run is to answer: the tests of each question. A question is worth the least of its tests' scores.
 pub type Tests = Vec<Vec<Test>>;
 
 /// Lower limit of a score, which keeps the logarithm finite.

@@ -3,7 +3,7 @@
 //! A question is either which of two effects a cable has, or how large some parameters are. The value of a run is computed from the cycle's own model
 //! (`criterion`): the model predicts the log (`predicted`), and its derivatives show how much of that another model could compensate. Runs consist of
 //! pieces (`pieces`), each checked against all limits; `choose` selects the pieces with the greatest value. The evidence is then recomputed for the
-//! whole run, by fitting the wrong model to the prediction of the right one (`hypothesis`), with each of both models being right in turn. The values
+//! whole run, by fitting the wrong model to the prediction of the right one (`hypothesis`), once for each model being the right one. The values
 //! that the wrong model takes there enter the selection of the next round.
 //!
 //! The method is that of optimal experiments: T-optimality to distinguish models (A. C. Atkinson, V. V. Fedorov, *Biometrika* 62 (1975), 57–70), and
@@ -52,7 +52,7 @@ pub struct Question {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Aim {
     /// Which of two effects the cable has in addition to the rest of its model; `None` asks whether it has the other effect at all. An effect that
-    /// the model lacks is assumed half as strong as the maximum in machines, or as strong as it looks most like the other.
+    /// the model lacks is given half its greatest usual strength, or the strength at which it is hardest to tell from the other.
     Separate([Option<Effect>; 2]),
     /// How large these parameters are.
     Determine(Vec<Parameter>),
@@ -84,7 +84,7 @@ pub struct Forecast {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Goal {
     /// `ΔBIC` in favour of the effect that the cable has: if it is the first, and if it is the second; `None` for no effect, and for one that is too small
-    /// to be seen or that the other can always imitate.
+    /// to be seen or that the other imitates.
     Separated {
         /// The effects.
         effects: [Option<Effect>; 2],
@@ -104,7 +104,7 @@ pub struct KnownParameter {
     pub value: f64,
     /// Its standard error, in its unit.
     pub standard_error: f64,
-    /// Width of its interval as a multiple of the widest one that determines it.
+    /// Width of its interval, divided by the widest that still counts as determined.
     pub vagueness: f64,
 }
 

@@ -17,6 +17,9 @@ use crate::excite::ExcitationError;
 use crate::fit::{CableRecord, Measurements, Parameter};
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 
+/// Evidence that would count for something (R. E. Kass, A. E. Raftery, *Bayes factors*, J. Am. Stat. Assoc. 90, 1995: 6 to 10 is strong).
+const POSITIVE_BIC: f64 = 6.0;
+
 /// A question with its models.
 pub(super) enum QuestionModels {
     /// The true models with those to be distinguished from them, in the order of the question's effects. `first` is the index of the model whose
@@ -45,12 +48,21 @@ impl QuestionModels {
         periods_m.reduce(f64::max)
     }
 
-    /// Drops the question whether the second effect, if it is the true one, can be told from the first. No run answers that if the first does the same
-    /// wherever it is weak enough, as a bent sensor that is nearly straight does what a gain does. Returns `None` if nothing is to be dropped.
-    pub(super) fn ask_for_first_alone(&mut self) -> Option<()> {
-        let Self::Separate { first, right, .. } = self else { return None };
-        right[*first].as_ref()?;
-        right[1 - *first].take().map(|_| ())
+    /// Drops the question whether the second effect, if it is the true one, can be told from the first, and its figure, if a run of `count` training samples
+    /// tells the other half and the first effect imitates the second: apart from its additional parameters it leaves no evidence. A bent sensor that is
+    /// nearly straight does what a gain does. Returns `None` if nothing is to be dropped.
+    pub(super) fn ask_for_first_alone(&mut self, goal: &mut Goal, count: f64) -> Option<()> {
+        let Self::Separate { first, right, wrong, .. } = self else { return None };
+        let Goal::Separated { delta_bic, .. } = goal else { return None };
+        let second = 1 - *first;
+        #[expect(clippy::cast_precision_loss, reason = "a few parameters")]
+        let more = wrong[second].last()?.free.len() as f64 - right[second].as_ref()?.free.len() as f64;
+        let is_imitated = delta_bic[second]? - more * count.ln() < POSITIVE_BIC;
+        if delta_bic[*first]? < STRONG_BIC || !is_imitated {
+            return None;
+        }
+        (right[second], delta_bic[second]) = (None, None);
+        Some(())
     }
 }
 

@@ -13,6 +13,7 @@ use crate::candidates::ripple::least_range_m;
 use crate::discover::naming::STRONG_BIC;
 use crate::excite::{Excitation, ExcitationError, ExcitationOptions};
 use crate::fit::{Measurements, Progress, Reference};
+use crate::samples::record::Row;
 use crate::simulate::mechanics::motion::Motion;
 use crate::trajectory::{LOAD_CHANGE_S, Piece, Trajectory, WorkBox};
 
@@ -105,7 +106,7 @@ impl<'a> Studio<'a> {
     }
 
     pub(super) fn design(&self) -> Result<Experiment, ExcitationError> {
-        self.progress.begin(4 + 4 * ROUNDS);
+        self.progress.begin(4 + 2 * ROUNDS);
         let in_all = |work: &(dyn Fn(&Question) -> Result<QuestionModels, ExcitationError> + Sync)| {
             self.questions.par_iter().map(work).collect::<Result<Vec<QuestionModels>, ExcitationError>>()
         };
@@ -117,9 +118,15 @@ impl<'a> Studio<'a> {
             self.establish(question, &measurements, case);
         });
         let (mut excitation, mut goals) = self.best_run(&mut cases)?;
-        let open = cases.iter_mut().zip(&goals).filter(|(_, goal)| !goal.as_ref().is_some_and(Goal::tells));
-        if open.filter_map(|(case, _)| case.ask_for_first_alone()).count() > 0 {
-            (excitation, goals) = self.best_run(&mut cases)?;
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let count = 0.5 * excitation.total_cycles() as f64;
+        let asked = cases.iter_mut().zip(goals.iter_mut().flatten());
+        if asked.filter_map(|(case, goal)| case.ask_for_first_alone(goal, count)).count() > 0 {
+            self.progress.begin(2 * ROUNDS);
+            let designed = self.best_run(&mut cases)?;
+            if worth(&designed.1) > worth(&goals) {
+                (excitation, goals) = designed;
+            }
         }
         let of_standard = self.forecast(&self.standard, &mut cases);
         self.step_done()?;
@@ -142,8 +149,7 @@ impl<'a> Studio<'a> {
         let mut best: Option<(f64, Designed)> = None;
         for _ in 0..ROUNDS {
             let (designed, _) = self.next_run(cases)?;
-            let worth = |goal: &Option<Goal>| goal.as_ref().map_or(0.0, Goal::score).max(1e-6).ln();
-            let value: f64 = designed.1.iter().map(worth).sum();
+            let value = worth(&designed.1);
             if best.as_ref().is_none_or(|(best, _)| value > *best) {
                 best = Some((value, designed));
             }
@@ -183,7 +189,7 @@ impl<'a> Studio<'a> {
     fn chosen(&self, cases: &[QuestionModels]) -> Result<Excitation, ExcitationError> {
         let tests = self.tests(cases, &self.library)?;
         let time_s = self.duration_s - self.lead_in_s;
-        let chosen = choose::choose(&tests, &self.times_s, time_s, self.needed_piece(cases, time_s));
+        let chosen = choose::choose(&tests, &self.times_s, time_s, &self.needed_pieces(cases));
         let pieces: Vec<Piece> = chosen.iter().filter_map(|place| self.pieces.get(*place)).copied().collect();
         let mut by_load = pieces.clone();
         by_load.sort_by(|one, other| one.load_share.total_cmp(&other.load_share));
@@ -205,28 +211,25 @@ impl<'a> Studio<'a> {
         best.map(|(_, run)| run).ok_or_else(|| self.broken_off())
     }
 
-    /// Returns the shortest piece in which each cable that may have a ripple turns as often as the discovery needs to find its period; `None` if there is no
-    /// ripple, or no such piece.
-    fn needed_piece(&self, cases: &[QuestionModels], time_s: f64) -> Option<usize> {
-        let ranges_m: Vec<(usize, f64)> = self
-            .questions
-            .iter()
-            .zip(cases)
-            .filter_map(|(question, case)| Some((question.cable, least_range_m(case.greatest_period_m()?))))
-            .collect();
-        let reaches = |piece: usize, (cable, range_m): &(usize, f64)| {
-            let record = self.library.cable(*cable)?;
-            let (_, rows) = record.logs().nth(piece)?;
-            let lengths_m = || rows.iter().map(|row| row.signals.length_m).filter(|length_m| length_m.is_finite());
-            let [least_m, greatest_m] =
-                [lengths_m().fold(f64::INFINITY, f64::min), lengths_m().fold(f64::NEG_INFINITY, f64::max)];
-            Some(greatest_m - least_m >= *range_m)
-        };
-        let fits = |piece: &usize| {
-            self.times_s[*piece] <= time_s && ranges_m.iter().all(|needed| reaches(*piece, needed) == Some(true))
-        };
-        let reaching = (0..self.times_s.len()).filter(|_| !ranges_m.is_empty()).filter(fits);
-        reaching.min_by(|one, other| self.times_s[*one].total_cmp(&self.times_s[*other]))
+    /// Returns the pieces that the run needs for the discovery to find the period of a ripple, if there may be one: for each cable the shortest piece over
+    /// whose range it turns often enough, or else the one with the greatest range.
+    fn needed_pieces(&self, cases: &[QuestionModels]) -> Vec<usize> {
+        let mut needed: Vec<usize> = Vec::new();
+        for (question, case) in self.questions.iter().zip(cases) {
+            let Some(least_m) = case.greatest_period_m().map(least_range_m) else { continue };
+            let Some(record) = self.library.cable(question.cable) else { continue };
+            let covered_m = |(_, rows): (usize, &[Row])| {
+                let lengths_m = || rows.iter().map(|row| row.signals.length_m).filter(|length_m| length_m.is_finite());
+                lengths_m().fold(f64::NEG_INFINITY, f64::max) - lengths_m().fold(f64::INFINITY, f64::min)
+            };
+            let ranges_m: Vec<f64> = record.logs().map(covered_m).collect();
+            let all = || 0..ranges_m.len().min(self.times_s.len());
+            let reaching = all().filter(|piece| ranges_m[*piece] >= least_m);
+            let shortest = reaching.min_by(|one, other| self.times_s[*one].total_cmp(&self.times_s[*other]));
+            let piece = shortest.or_else(|| all().max_by(|one, other| ranges_m[*one].total_cmp(&ranges_m[*other])));
+            needed.extend(piece.filter(|piece| !needed.contains(piece)));
+        }
+        needed
     }
 
     fn cannot_tell(&self, forecasts: &[Forecast]) -> ExcitationError {
@@ -253,6 +256,11 @@ impl<'a> Studio<'a> {
         });
         ExcitationError::CannotTell { what, duration_s: self.duration_s }
     }
+}
+
+/// Returns the worth of the goals of all questions.
+fn worth(goals: &[Option<Goal>]) -> f64 {
+    goals.iter().map(|goal| goal.as_ref().map_or(0.0, Goal::score).max(1e-6).ln()).sum()
 }
 
 /// Returns the identification run, cut to a duration.

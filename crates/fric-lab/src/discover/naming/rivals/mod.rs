@@ -131,7 +131,7 @@ pub fn best_rival(
         }
         let replaces: Vec<usize> = all.iter().copied().filter(|place| !places.contains(place)).collect();
         let gain_left = gain(&places);
-        // A law of several columns explains half of many a name.
+        // Several columns easily explain half of what a name does.
         let may_bend = law.len() == 1 && excess > NEGLIGIBLE * of_noise;
         if replaces.is_empty() && may_bend && together - by_name > enough.max(MOST_BENT * excess).max(*least) {
             // The law wins if it explains much of the rest, more than chance would, and shares what it explains with one of the names.

@@ -3,6 +3,7 @@
 use fric_core::effects::Effect;
 
 use super::fits::scales_all;
+use super::standing::standings;
 use super::{Search, Tried, is_one_of_many, without};
 use crate::discover::naming::{NEGLIGIBLE, Refusal, STRONG_BIC};
 use crate::discover::wrench::bench::Trial;
@@ -29,7 +30,8 @@ impl Search<'_> {
             let Some(rival) = self.rival(found, place) else { continue };
             let trial = self.fit(found);
             // What several other cables have is the likelier name here too.
-            let least_lead = if is_one_of_many(found, found[place]) { STRONG_BIC } else { 0.0 };
+            let all = standings(&self.bench, &trial, found).into_iter().zip(found.iter().copied()).collect::<Vec<_>>();
+            let least_lead = if is_one_of_many(&self.strong(&all), found[place]) { STRONG_BIC } else { 0.0 };
             if rival.lead > least_lead
                 && rival.trial.held_out < trial.held_out
                 && !self.is_at_end(rival.candidate, &rival.trial)
@@ -78,10 +80,10 @@ impl Search<'_> {
                 let refusal = match self.refused.get(&candidate) {
                     _ if self.is_at_end(candidate, &with) => Refusal::AtBound,
                     _ if !self.is_more_than_usual(candidate, &with) => Refusal::Usual,
-                    Some(refusal) if *refusal != Refusal::Weak => *refusal,
-                    _ if delta_bic >= -STRONG_BIC => Refusal::Weak,
-                    _ if trial.held_out - with.held_out <= self.least_gain(&trial) => Refusal::Small,
-                    _ => Refusal::Unjudged,
+                    Some(refusal) => *refusal,
+                    None if delta_bic >= -STRONG_BIC => Refusal::Weak,
+                    None if trial.held_out - with.held_out <= self.least_gain(&trial) => Refusal::Small,
+                    None => Refusal::Unjudged,
                 };
                 Tried { candidate, delta_bic, refusal }
             }));

@@ -24,10 +24,11 @@ impl Search<'_> {
                 let [one_late, other_late] = [of, beside].map(|of| are_doubted && is_of_one_sensor(*of));
                 one_late.cmp(&other_late).then(one.away.total_cmp(&other.away))
             });
+            let strong = self.strong(&weakest_first);
             let mut named = BTreeMap::new();
             let mut refused = None;
             for (standing, candidate) in weakest_first {
-                let (delta_bic, refusal) = self.judged(found, candidate, &trial, &standing);
+                let (delta_bic, refusal) = self.judged(found, (candidate, &standing), &trial, &strong);
                 refused = refusal.map(|refusal| (candidate, refusal));
                 if refused.is_some() {
                     break;
@@ -42,26 +43,36 @@ impl Search<'_> {
         }
     }
 
-    /// Returns the evidence for a name and, if it cannot stay, the reason.
+    /// Returns the names for which the evidence is strong by their intervals: what leaving one out would cost, to second order.
+    pub(super) fn strong(&self, standings: &[(Standing, Candidate)]) -> Vec<Candidate> {
+        #[expect(clippy::cast_precision_loss, reason = "a count")]
+        let of_parameter = (6.0 * self.bench.count(false) as f64).ln();
+        #[expect(clippy::cast_precision_loss, reason = "a few parameters")]
+        let is_strong = |(standing, candidate): &&(Standing, Candidate)| {
+            standing.away * standing.away - candidate.count() as f64 * of_parameter > STRONG_BIC
+        };
+        standings.iter().filter(is_strong).map(|(_, candidate)| *candidate).collect()
+    }
+
+    /// Returns the evidence for a name and, if it cannot stay, the reason. `strong` are the names with strong evidence.
     fn judged(
         &mut self,
         found: &[Candidate],
-        candidate: Candidate,
+        (candidate, standing): (Candidate, &Standing),
         trial: &Trial,
-        standing: &Standing,
+        strong: &[Candidate],
     ) -> (f64, Option<Refusal>) {
         let Standing { inflation, away } = *standing;
         let without = self.fit(&without(found, candidate));
         let delta_bic = self.delta_bic(&without, trial, candidate.count(), inflation);
         let least_square = (LEAST_SIZE * self.noise_square).max(self.believed.of(candidate));
         let is_small = without.held_out - trial.held_out <= self.held_out_squares(least_square);
+        let is_strong = || delta_bic < -STRONG_BIC && self.beyond_one_block(trial, &without) >= STRONG_BIC * inflation;
         let refusal = if self.is_at_end(candidate, trial) {
             Some(Refusal::AtBound)
-        } else if is_small
-            || away < LEAST_AWAY
-            || !is_one_of_many(found, candidate)
-                && (delta_bic >= -STRONG_BIC || self.beyond_one_block(trial, &without) < STRONG_BIC * inflation)
-        {
+        } else if is_small {
+            Some(Refusal::Small)
+        } else if away < LEAST_AWAY || !is_one_of_many(strong, candidate) && !is_strong() {
             Some(Refusal::Weak)
         } else if !self.is_more_than_usual(candidate, trial) {
             Some(Refusal::Usual)

@@ -5,8 +5,8 @@
 //! 1. *Enter.* Candidates enter one after the other, each time the one with the most evidence on the training samples that also helps on the held-out
 //!    samples. Several cables with the same effect become one effect with the same parameters if that explains as much, and the other way round.
 //! 2. *Leave.* A name stays if the evidence for it is strong, also outside the block in which it helps most; it is large enough to matter; it exceeds
-//!    what robots without it show; its parameters keep clear of their bounds; and cables that have it alike agree in it. For an effect that several other
-//!    cables have too, it suffices that its interval is clear of doing nothing. The least significant name that cannot stay is set aside, and does not
+//!    what robots without it show; its parameters keep clear of their bounds; and cables that have it alike agree in it. If at least three
+//!    other cables have the effect with strong evidence, [`LEAST_AWAY`] standard errors take the place of strong evidence; all else holds. The least significant name that cannot stay is set aside, and does not
 //!    return in this search.
 //! 3. *Exchange.* Each name is compared with the best other candidate in its place. An effect that several other cables have too gives way only to strong
 //!    evidence.
@@ -45,7 +45,8 @@ const ROUNDS: usize = 6;
 const NEAR_ERRORS: f64 = 0.5;
 /// The parameters of a name together are at least this many standard errors away from their neutral values.
 const LEAST_AWAY: f64 = 4.0;
-/// Minimum number of cables with the same effect that may become one effect of all cables, and of sensors in doubt that are judged together.
+/// Minimum number of cables with the same effect that may become one effect of all cables, of other cables with an effect that make it no surprise on one more,
+/// and of sensors in doubt that are judged together.
 const LEAST_ALIKE: usize = 3;
 
 /// A name with its evidence.
@@ -216,14 +217,33 @@ fn set_of(found: &[Candidate]) -> Vec<Candidate> {
     set
 }
 
-/// Whether at least [`LEAST_ALIKE`] other cables have the same effect as one cable has by a candidate. Then it is no surprise on this one.
-fn is_one_of_many(found: &[Candidate], candidate: Candidate) -> bool {
+/// Whether at least [`LEAST_ALIKE`] other cables have, with strong evidence, the same effect as one cable has by a candidate. Then it is no surprise on
+/// this one.
+fn is_one_of_many(strong: &[Candidate], candidate: Candidate) -> bool {
     let Candidate::Own(_, effect) = candidate else { return false };
-    let others = found.iter().filter(|of| **of != candidate && matches!(of, Candidate::Own(_, own) if *own == effect));
+    let others = strong.iter().filter(|of| **of != candidate && matches!(of, Candidate::Own(_, own) if *own == effect));
     others.count() >= LEAST_ALIKE
 }
 
 /// Returns the candidates except one.
 fn without(found: &[Candidate], candidate: Candidate) -> Vec<Candidate> {
     found.iter().copied().filter(|of| *of != candidate).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use fric_core::effects::Effect;
+
+    use super::{Candidate, is_one_of_many};
+
+    #[test]
+    fn three_other_cables_make_an_effect_no_surprise() {
+        let gain = |cable| Candidate::Own(cable, Effect::SensorGain);
+        let strong = [gain(0), gain(1), gain(2), Candidate::Own(3, Effect::BearingDrag)];
+        assert!(is_one_of_many(&strong, gain(5)));
+        // Itself does not count, nor another effect, nor one that all cables have alike.
+        assert!(!is_one_of_many(&strong, gain(2)));
+        assert!(!is_one_of_many(&strong, Candidate::Own(5, Effect::BearingDrag)));
+        assert!(!is_one_of_many(&strong, Candidate::Alike(Effect::SensorGain)));
+    }
 }
