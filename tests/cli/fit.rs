@@ -491,11 +491,10 @@ fn stdout_is_nothing_but_json_where_it_is_asked_for() {
 #[test]
 fn what_is_fitted_is_told() {
     let place = bench();
-    let headline = |arguments: &[&str]| {
-        unwrapped(&fit(&place, &[&["log.mcap", "--model", "guess.toml"], arguments].concat()).stdout)
-    };
-    let told = headline(&[]);
+    place.write("bench.toml", bench_robot());
+    let headline = |arguments: &[&str]| unwrapped(&fit(&place, &[&["log.mcap"], arguments].concat()).succeeds().stdout);
+    let told = headline(&["--model", "guess.toml"]);
     assert!(told.contains("Friction is fitted on 1 cable"), "{told}");
-    let told = headline(&["--parameters", "offset_n"]);
-    assert!(told.contains("Only offset_n is fitted; the model leaves"), "{told}");
+    let told = headline(&["--model", "bench.toml", "--parameters", "sensor_gain.gain"]);
+    assert!(told.contains("Only sensor_gain.gain is fitted; the model leaves"), "{told}");
 }

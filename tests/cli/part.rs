@@ -57,7 +57,7 @@ fn a_part_that_is_none_is_told() {
     run(&["--end", "nan"]).fails(2, &["--end", "number of seconds"]);
     run(&["--start", "7.5"]).fails(1, &["no row of the log is from 7.5 s on: its last is 0.399 s after its first"]);
     run(&["--start", "0.1001", "--end", "0.1002"])
-        .fails(1, &["to before 0.1002 s: its next is 0.102 s after its first"]);
+        .fails(1, &["to before 0.1002 s: its next is 0.101 s after its first"]);
     place.run_in_vain(&["discover", "log.mcap", "--start", "7", "--end", "8"]).fails(1, &["from 7 s to before 8 s"]);
 }
 
