@@ -53,6 +53,46 @@ fn columns_are_found_by_their_names_and_units() {
     assert_close(states[3].position[0], 0.797);
 }
 
+/// As a data logger with German settings writes it: lines about the recording, names, units, dates, decimal commas.
+#[test]
+fn a_loggers_own_file_is_read_with_its_dates_units_and_remarks() {
+    let place = Place::empty();
+    let row = |at: i32| {
+        let (second, ms) = (at / 100, at % 100 * 10);
+        format!("03.05.2024 12:00:{second:02},{ms:03};0,05{};{};0,07;OK\n", at % 9, at % 50)
+    };
+    let rows: String = (0..300).map(row).collect();
+    let heading = "Messung 7;;;;\nRate;100;;;\n\nZeit;Seilkraft;Weg;Kraft Plattform;Zustand\n;kN;mm;kN;\n";
+    place.write("run.csv", format!("{heading}{rows}"));
+    let text = drafted(&place, "run.csv");
+    for part in [
+        "cycle_s = 0.01 ",
+        "time_s = { column = \"Zeit\" }",
+        "\"cable1.force_n\" = { column = \"Seilkraft\", factor = 1000.0 }",
+        "\"cable1.length_m\" = { column = \"Weg\", factor = 0.001 }",
+        "\"cable1.reference_n\" = { column = \"Kraft Plattform\", factor = 1000.0 }",
+    ] {
+        assert!(text.replace("\"time_s\"", "time_s").contains(part), "{part}: {text}");
+    }
+    place.run(&["convert", "run.csv", "--model", "draft.toml", "-o", "run.mcap"]).succeeds();
+    let states = super::logs::on_topic(&place.read("run.mcap"), "/cable_states", super::cdr::joint_state);
+    assert_eq!(states.len(), 300);
+    assert_close(states[150].effort[0], 56.0);
+    assert_close(states[150].position[0], 0.0);
+}
+
+#[test]
+fn the_rate_is_found_though_a_column_is_not() {
+    let place = Place::empty();
+    let rows: String = (0..200).map(|at| format!("{},3.0{},{}\n", 4 * at, at % 7, at)).collect();
+    place.write("run.csv", format!("t [ms],F [N],thing\n{rows}"));
+    let text = drafted(&place, "run.csv");
+    for part in ["cycle_s = 0.004 ", "# ? cable1.length_m: no column", "# ? not used: thing"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert!(!text.contains("\"cable1.length_m\" ="), "{text}");
+}
+
 #[test]
 fn what_is_no_log_or_is_there_already_is_refused_and_nothing_written() {
     let place = Place::with_log();

@@ -211,6 +211,58 @@ fn a_lag_is_found_also_pulled_one_way() {
     assert!((lag_s / (samples[3].time_s - samples[0].time_s) - 1.0).abs() < 0.05, "{lag_s} s");
 }
 
+/// The search looks at some 200 samples; a run of 350 samples has its lag exactly, and the step of all gratings where it is, between any two samples.
+#[test]
+fn a_lag_and_a_step_are_those_of_all_samples() {
+    let (text, samples) = measured(Experiment::Mixed, 7, &[0.1753]);
+    // Twice the samples: each second one lies between two others.
+    let mut dense = Vec::new();
+    for pair in samples.windows(2) {
+        let mean = |of: fn(&RunSample) -> f64| 0.5 * (of(&pair[0]) + of(&pair[1]));
+        let mut between = pair[0].clone();
+        between.time_s = mean(|sample| sample.time_s);
+        between.tension_base_n = mean(|sample| sample.tension_base_n);
+        between.marker_m.clear();
+        for (between_nm, next_nm) in between.shift_nm.iter_mut().zip(&pair[1].shift_nm) {
+            *between_nm = 0.5 * (*between_nm + next_nm);
+        }
+        dense.extend([pair[0].clone(), between]);
+    }
+    assert!((300..800).contains(&dense.len()), "{}", dense.len());
+    for place in [dense.len() / 3, dense.len() / 2, dense.len() / 2 + 1] {
+        let mut warmer = dense.clone();
+        for shift_nm in warmer[place..].iter_mut().flat_map(|sample| &mut sample.shift_nm) {
+            *shift_nm += 0.02;
+        }
+        let discovery = found(&text, &warmer);
+        println!("{:?}", told(&discovery));
+        let effects = &discovery.result.cables[0].effects;
+        let from_s =
+            effects.iter().find(|effect| effect.kind == "temperature").and_then(|of| of.parameters.get("from_s"));
+        let from_s = from_s.unwrap();
+        assert!(
+            dense[place - 1].time_s < from_s && from_s < dense[place].time_s,
+            "{from_s} s, {} s",
+            dense[place].time_s
+        );
+    }
+    for count in [3, 5] {
+        let mut late = dense.clone();
+        for (sample, shown) in late.iter_mut().skip(count).zip(&dense) {
+            sample.tension_base_n = shown.tension_base_n;
+        }
+        let discovery = found(&text, &late);
+        let lag = &discovery.result.cables[0].effects[0];
+        let truth_s = dense[count].time_s - dense[0].time_s;
+        let (lag_s, error_s) =
+            (lag.parameters.get("base_lag_s").unwrap(), lag.standard_errors.get("base_lag_s").unwrap());
+        assert!(
+            (lag_s - truth_s).abs() < 1.96 * error_s && error_s < 0.02 * truth_s,
+            "{lag_s} ± {error_s} s, {truth_s} s"
+        );
+    }
+}
+
 /// Lines of other gratings are wrong in slope and offset, and pulled one way the tension rises with the time as a drift does.
 #[test]
 fn lines_of_other_gratings_are_no_drift() {

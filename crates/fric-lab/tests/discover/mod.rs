@@ -1,5 +1,6 @@
 //! Discovery on logs with known effects hidden in them; the whole sweep is `benches/discover.rs`.
 
+mod beside;
 mod contacts;
 mod drift;
 mod drive;

@@ -1,14 +1,18 @@
 //! The form of a CSV file: where its rows begin, the separator, and the names of the columns.
 
+use std::collections::BTreeSet;
+
 use csv::{ByteRecord, ReaderBuilder};
 
-use super::number::Decimals;
+use super::number::{Decimals, clock_nanos};
 
 /// Possible separators.
 const SEPARATORS: [u8; 3] = *b",;\t";
 /// Marks a line that is not part of the table.
 pub const COMMENT: u8 = b'#';
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+/// Number of lines that show where the table begins.
+const MOST_LINES: usize = 256;
 
 /// The form of a CSV file.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +20,8 @@ pub struct Form {
     pub separator: u8,
     /// Column names, in the order of the file.
     pub names: Vec<String>,
+    /// The cells of the line under the names, if that has no numbers.
+    pub units: Vec<String>,
     /// Position of the first row, and its line, from 1.
     pub rows_at: u64,
     pub first_line: u64,
@@ -37,32 +43,68 @@ struct Line<'a> {
 impl Form {
     /// Determines the form of a file that begins with these bytes; `None` if there are only comments.
     pub fn find(beginning: &[u8]) -> Option<Self> {
-        let table = beginning.strip_prefix(BYTE_ORDER_MARK).unwrap_or(beginning);
-        let mut at = beginning.len() - table.len();
-        let mut lines = Vec::new();
-        for number in 1.. {
-            let next = next_line(beginning, at);
-            let Some(text) = beginning.get(at..next).filter(|text| !text.is_empty()) else { break };
-            lines.push(Line { text: text.trim_ascii(), at, number });
-            at = next;
-        }
         let mut separators = SEPARATORS.to_vec();
         let mut comment = None;
-        let mut filled = lines.iter().filter(|line| !line.text.is_empty());
-        let header = loop {
-            let line = filled.next()?;
+        let mut filled: Vec<Line<'_>> = Vec::new();
+        for line in lines(beginning).filter(|line| !line.text.is_empty()) {
             match line.text {
-                [COMMENT, text @ ..] => comment = Some(text.trim_ascii()),
+                [COMMENT, text @ ..] if filled.is_empty() => comment = Some(text.trim_ascii()),
+                [COMMENT, ..] => {}
                 // The separator line of spreadsheets.
-                [b's', b'e', b'p', b'=', separator] => separators = vec![*separator],
-                _ => break line,
+                [b's', b'e', b'p', b'=', separator] if filled.is_empty() => separators = vec![*separator],
+                _ => filled.push(line),
             }
+            if filled.len() == MOST_LINES {
+                break;
+            }
+        }
+        let titled = separators.iter().filter_map(|separator| Self::titled(&filled, *separator));
+        // The first of those with equally many columns; `max_by_key` would take the last.
+        let titled = titled.max_by_key(|form| (form.names.len(), std::cmp::Reverse(form.separator)));
+        titled.or_else(|| Self::from_first_line(beginning, &filled, &separators, comment))
+    }
+
+    /// Finds the table by its most frequent number of cells, and above its first row of numbers the names, which lines about the recording may precede
+    /// and a line of units may follow; `None` if no line above the rows has as many cells.
+    fn titled(filled: &[Line<'_>], separator: u8) -> Option<Self> {
+        let rows: Vec<Vec<String>> = filled.iter().map(|line| cells(line.text, separator)).collect();
+        let frequency = |count: usize| rows.iter().filter(|row| row.len() == count).count();
+        let counts = rows.iter().map(Vec::len).filter(|count| *count > 1);
+        let count = counts.max_by_key(|count| (frequency(*count), *count))?;
+        let of_table: Vec<&Vec<String>> = rows.iter().filter(|row| row.len() == count).collect();
+        // Not the last one, which may be cut off or a remark.
+        let usual = of_table.get(3 * of_table.len() / 4)?;
+        // A row has text only where rows usually do.
+        let is_row = |row: &Vec<String>| {
+            let fits = |(cell, usual): (&String, &String)| !is_text(cell) || is_text(usual);
+            row.len() == count && number_count(row) > 0 && row.iter().zip(*usual).all(fits)
         };
-        let row = filled.find(|line| !line.text.starts_with(&[COMMENT]));
+        let first_row = rows.iter().position(is_row)?;
+        let above = rows.get(..first_row)?.iter().rev().take_while(|row| row.len() == count).count();
+        let filled_cells =
+            |row: &Vec<String>| row.iter().filter(|cell| !cell.is_empty()).collect::<BTreeSet<_>>().len();
+        let distinct = |place: &usize| rows.get(*place).map_or(0, filled_cells);
+        // Lines about the recording have empty cells, a line of units repeats some; the first of equal ones.
+        let title = (first_row - above..first_row).rev().max_by_key(distinct)?;
+        let has_numbers = |place: &usize| rows.get(*place).is_some_and(|row| number_count(row) > 0);
+        let first = (title + 1..=first_row).find(has_numbers)?;
+        let (names, line) = (rows.get(title)?.clone(), filled.get(first)?);
+        let units = rows.get(title + 1).filter(|_| first > title + 1).cloned().unwrap_or_default();
+        let (rows_at, first_line) = (line.at as u64, line.number);
+        Some(Self { separator, names, units, rows_at, first_line, lacks_header: false, has_fitting_row: true })
+    }
+
+    /// Takes the first line for the names, or the last comment if that line has numbers.
+    fn from_first_line(
+        beginning: &[u8],
+        filled: &[Line<'_>],
+        separators: &[u8],
+        comment: Option<&[u8]>,
+    ) -> Option<Self> {
+        let (header, row) = (filled.first()?, filled.get(1));
         let separator = separators.iter().copied().max_by_key(|separator| {
             let count = cells(header.text, *separator).len();
             let fits = row.is_none_or(|row| cells(row.text, *separator).len() == count);
-            // The first of equal ones; `max_by_key` would take the last.
             (count > 1 && fits, count, std::cmp::Reverse(*separator))
         })?;
         let mut names = cells(header.text, separator);
@@ -78,10 +120,21 @@ impl Form {
         if let Some(commented) = commented {
             names = commented;
         }
-        let rows_at = if lacks_names { header.at } else { next_line(beginning, header.at) };
+        let rows_at = if lacks_names { header.at } else { next_line(beginning, header.at) } as u64;
         let first_line = header.number + u64::from(!lacks_names);
-        Some(Self { separator, names, rows_at: rows_at as u64, first_line, lacks_header, has_fitting_row })
+        Some(Self { separator, names, units: Vec::new(), rows_at, first_line, lacks_header, has_fitting_row })
     }
+}
+
+/// Iterates over the lines of a file that begins with these bytes, trimmed.
+fn lines(beginning: &[u8]) -> impl Iterator<Item = Line<'_>> {
+    let table = beginning.strip_prefix(BYTE_ORDER_MARK).unwrap_or(beginning);
+    let mut at = beginning.len() - table.len();
+    (1..).map_while(move |number| {
+        let next = next_line(beginning, at);
+        let text = beginning.get(at..next).filter(|text| !text.is_empty())?;
+        Some(Line { text: text.trim_ascii(), at: std::mem::replace(&mut at, next), number })
+    })
 }
 
 /// Returns the position of the next line; lines end with `\n`, `\r\n` or `\r`.
@@ -105,10 +158,14 @@ fn unquoted(name: &str) -> &str {
     name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name)
 }
 
-/// Returns the number of numeric cells.
+/// Whether a cell is neither empty nor a number or a time.
+fn is_text(cell: &str) -> bool {
+    Decimals::default().number(cell).is_none() && clock_nanos(cell).is_none()
+}
+
+/// Returns the number of cells with numbers or times.
 fn number_count(cells: &[String]) -> usize {
-    let is_number = |cell: &&String| !cell.is_empty() && Decimals::default().number(cell).is_some();
-    cells.iter().filter(is_number).count()
+    cells.iter().filter(|cell| !cell.is_empty() && !is_text(cell)).count()
 }
 
 /// Decodes bytes as UTF-8, else as Latin-1, which spreadsheets use for headers.
@@ -139,5 +196,37 @@ mod tests {
         assert_eq!(Form::find(b"# nothing\n\n"), None);
         assert_eq!(form("t,a\n").rows_at, 4);
         assert_eq!(named("t,a\r1,2\r3,4\r"), expected(',', "t|a", "1,2\r3,4\r", 2));
+        // A row that is cut off, and rows that do not fit the header, leave the names where they are.
+        assert_eq!(named("t,a\n1\n2,3\n4,5\n"), expected(',', "t|a", "1\n2,3\n4,5\n", 2));
+        assert_eq!(named("t,a\n1,2,\n3,4,\n"), expected(',', "t|a", "1,2,\n3,4,\n", 2));
+        // Channels named by numbers.
+        assert_eq!(named("t;1;2\n0;5;6\n1;5;6\n"), expected(';', "t|1|2", "0;5;6\n1;5;6\n", 2));
+    }
+
+    #[test]
+    fn lines_about_the_recording_and_a_line_of_units_are_not_rows() {
+        let form = |text: &str| {
+            let Form { separator, names, units, rows_at, first_line, lacks_header, .. } =
+                Form::find(text.as_bytes()).unwrap();
+            assert!(!lacks_header);
+            let rows = text[usize::try_from(rows_at).unwrap()..].to_owned();
+            (char::from(separator), names.join("|"), units.join("|"), rows, first_line)
+        };
+        let expected = |separator, names: &str, units: &str, rows: &str, line| {
+            (separator, names.to_owned(), units.to_owned(), rows.to_owned(), line)
+        };
+        let rows = "0,001;5,3;1,2\n0,002;5,4;1,3\n";
+        assert_eq!(
+            form(&format!("Zeit;Kraft;Weg\ns;N;mm\n{rows}")),
+            expected(';', "Zeit|Kraft|Weg", "s|N|mm", rows, 3)
+        );
+        let preamble = "Messung 7, Seil 3\nDatum;3.5.2024\nRate;1000\n\n";
+        assert_eq!(form(&format!("{preamble}Zeit;F;l\n{rows}")), expected(';', "Zeit|F|l", "", rows, 6));
+        // As spreadsheets pad them.
+        let padded = "Operator;Smith;\nRate;1000;\n;;\n";
+        assert_eq!(form(&format!("{padded}t;F;l\ns;N;m\n{rows}")), expected(';', "t|F|l", "s|N|m", rows, 6));
+        // Times that are dates, and text in every row.
+        let rows = "2024-05-03 12:00:00.001\t5.3\tok\n2024-05-03 12:00:00.002\t5.4\tok\n";
+        assert_eq!(form(&format!("a\tb\tc\n{rows}")), expected('\t', "a|b|c", "", rows, 2));
     }
 }

@@ -1,5 +1,12 @@
 //! Parses numbers and times as people and programs write them.
 
+use jiff::Timestamp;
+use jiff::civil::{DateTime, Time};
+use jiff::tz::TimeZone;
+
+/// Dates that ISO 8601 does not have. With slashes, the day may come before the month or after it, unless the year comes first.
+const DATES: [&str; 2] = ["%d.%m.%Y %H:%M:%S%.f", "%Y/%m/%d %H:%M:%S%.f"];
+
 /// The decimal separator of a file, which is either a point or a comma throughout.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Decimals {
@@ -24,6 +31,26 @@ impl Decimals {
         let number = cell.parse().ok().filter(|_| !(has_point && self.has_commas))?;
         self.has_points |= has_point;
         Some(number)
+    }
+}
+
+/// Returns the nanoseconds since 1970 of a date with a time of day, or since midnight of a time of day alone; `None` if it is neither. Without an offset
+/// from UTC it is taken for UTC.
+pub fn clock_nanos(cell: &str) -> Option<i64> {
+    // Decided quickly for numbers.
+    if !cell.contains(':') {
+        return None;
+    }
+    let cell = cell.replace(',', ".");
+    let since_1970 = |date: DateTime| TimeZone::UTC.to_timestamp(date).ok();
+    let written = |form: &str| DateTime::strptime(form, &cell).ok();
+    let stamp = cell.parse::<Timestamp>().ok();
+    let stamp = stamp.or_else(|| cell.parse().ok().and_then(since_1970));
+    let stamp = stamp.or_else(|| DATES.iter().copied().find_map(written).and_then(since_1970));
+    match stamp {
+        Some(stamp) => i64::try_from(stamp.as_nanosecond()).ok(),
+        None => Some(cell.parse::<Time>().ok()?.duration_since(Time::midnight()).as_nanos())
+            .and_then(|nanos| i64::try_from(nanos).ok()),
     }
 }
 
@@ -61,6 +88,29 @@ mod tests {
         assert_eq!(scaled("0.0000000015", 9), Some(2));
         assert_eq!(scaled("1700000000123456789", 0), Some(1_700_000_000_123_456_789));
         assert_eq!([scaled("", 9), scaled("1e3", 9), scaled("nan", 9), scaled("99999999999999", 9)], [None; 4]);
+    }
+
+    #[test]
+    fn times_of_clocks_are_read() {
+        // By GNU date: `date -u -d "2024-05-03 12:34:56" +%s`.
+        let noon = 1_714_739_696_000_000_000;
+        for cell in [
+            "2024-05-03T12:34:56Z",
+            "2024-05-03 12:34:56",
+            "2024-05-03T14:34:56+02:00",
+            "03.05.2024 12:34:56",
+            "3.5.2024 12:34:56",
+            "2024/05/03 12:34:56",
+        ] {
+            assert_eq!(clock_nanos(cell), Some(noon), "{cell}");
+        }
+        assert_eq!(clock_nanos("2024-05-03 12:34:56,789"), Some(noon + 789_000_000));
+        assert_eq!(clock_nanos("03.05.2024 12:34:56.000001"), Some(noon + 1000));
+        assert_eq!(clock_nanos("01:00:00.5"), Some(3_600_500_000_000));
+        // The first could be the 3rd of May or the 5th of March.
+        for cell in ["03/05/2024 12:34:56", "2024-05-03", "12.5", "a:b", "", "25:00:00"] {
+            assert_eq!(clock_nanos(cell), None, "{cell}");
+        }
     }
 
     #[test]

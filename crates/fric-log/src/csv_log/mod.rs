@@ -1,7 +1,7 @@
 //! CSV logs: a header, and one row of numbers per time.
 //!
 //! The following is detected automatically: comma, semicolon or tab as separator, decimal points or commas, a byte order mark, quotes, lines starting
-//! with `#`, and a header in one of these. Empty cells and `nan` are gaps of their signal. Columns are named like the keys of
+//! with `#`, a header in one of these, lines about the recording above the header, and a line of units under it. Empty cells and `nan` are gaps of their signal. Columns are named like the keys of
 //! [`ColumnTable`](fric_core::robot::file::ColumnTable), or as the robot file states. A row with too many or too few cells, or without a time, is
 //! left out and counted; text in place of a number is an error. The last line counts only if it has a line end, because its last number may be
 //! incomplete.
@@ -24,13 +24,15 @@ pub use self::units::GREAT_INTERVAL_S;
 
 use self::columns::{Column, Columns, Wanted};
 use self::units::{Quantity, TimeUnit, Units};
-use crate::csv_form::{COMMENT, Decimals, Form, scaled, text_of};
+use crate::csv_form::{COMMENT, Decimals, Form, clock_nanos, scaled, text_of};
 use crate::signals::{Role, SignalPaths};
 
 /// Number of bytes that contain the header and the first row of a file.
 const BEGINNING_BYTES: u64 = 1 << 18;
 /// Greatest likely time in seconds: the year 2100, counted from 1970.
 const GREATEST_TIME_S: f64 = 4.1e9;
+/// Power of ten from seconds to nanoseconds. A date or a time of day is in seconds: a factor does not go with it.
+const SECONDS_EXPONENT: u32 = 9;
 /// Number of bytes that are searched for the last line end.
 const ENDING_BYTES: u64 = 1 << 20;
 
@@ -142,6 +144,11 @@ impl CsvLog {
     #[must_use]
     pub fn column_names(&self) -> &[String] {
         self.files.first().map_or(&[], |file| file.form.names.as_slice())
+    }
+
+    /// Returns the line of units under the names in the first file; empty if there is none.
+    pub(crate) fn column_units(&self) -> &[String] {
+        self.files.first().map_or(&[], |file| file.form.units.as_slice())
     }
 
     /// Returns the bytes read so far, and the total.
@@ -333,7 +340,8 @@ impl<'a> Cells<'a> {
     fn stamp_nanos(&mut self, column: &Column) -> Result<Option<i64>, CsvError> {
         if let Some(exponent) = column.nanos_exponent()
             && let Ok(text) = std::str::from_utf8(self.text(column))
-            && let Some(nanos) = scaled(text, exponent)
+            && let Some(nanos) =
+                scaled(text, exponent).or_else(|| clock_nanos(text).filter(|_| exponent == SECONDS_EXPONENT))
         {
             return Ok(Some(nanos));
         }

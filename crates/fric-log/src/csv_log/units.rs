@@ -69,7 +69,7 @@ impl TimeUnit {
 }
 
 /// Mean force above which the unit is probably grams or millinewtons, N: the largest cable robots with sensors have lower forces.
-const GREAT_FORCE_N: f64 = 2000.0;
+const GREAT_FORCE_N: f64 = 4000.0;
 /// Force below which all values are probably in kilonewtons, N.
 const SMALL_FORCE_N: f64 = 0.1;
 /// Length above which the unit is probably millimetres, m: the diagonal of a hall.

@@ -128,6 +128,15 @@ impl Log {
         }
     }
 
+    /// Returns the cells of the line of units under the column names; empty if there is none.
+    #[must_use]
+    pub fn column_units(&self) -> &[String] {
+        match &self.content {
+            Content::Recording(_) | Content::Bag(_) => &[],
+            Content::Csv(table) => table.column_units(),
+        }
+    }
+
     /// Returns the names of the attachments.
     #[must_use]
     pub fn attachment_names(&self) -> Vec<String> {

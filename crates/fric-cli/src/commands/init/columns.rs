@@ -1,8 +1,8 @@
-//! Guesses the signals of a CSV log's columns from their names and units.
+//! Guesses the signals of a CSV log's columns from their names and units, in English and German.
 
 use fric_core::robot::file::{POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
 
-use super::draft::{ColumnGuess, Draft};
+use super::draft::{ColumnGuess, Draft, FORCE, LENGTH};
 
 /// The possible content of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,40 +40,56 @@ const UNITS: [(&str, Kind, f64); 22] = [
 ];
 
 /// Words in column names that indicate the content if no unit does.
-const WORDS: [(&str, Kind); 19] = [
+const WORDS: [(&str, Kind); 32] = [
     ("time", Kind::Time),
     ("timestamp", Kind::Time),
+    ("datetime", Kind::Time),
     ("stamp", Kind::Time),
     ("zeit", Kind::Time),
+    ("uhrzeit", Kind::Time),
+    ("zeitstempel", Kind::Time),
     ("t", Kind::Time),
     ("force", Kind::Force),
     ("tension", Kind::Force),
     ("load", Kind::Force),
     ("effort", Kind::Force),
     ("kraft", Kind::Force),
+    ("seilkraft", Kind::Force),
     ("f", Kind::Force),
     ("length", Kind::Length),
+    ("len", Kind::Length),
     ("position", Kind::Length),
+    ("pos", Kind::Length),
+    ("displacement", Kind::Length),
+    ("stroke", Kind::Length),
     ("encoder", Kind::Length),
+    ("weg", Kind::Length),
+    ("hub", Kind::Length),
+    ("länge", Kind::Length),
+    ("laenge", Kind::Length),
     ("l", Kind::Length),
     ("speed", Kind::Speed),
     ("velocity", Kind::Speed),
+    ("geschwindigkeit", Kind::Speed),
     ("vel", Kind::Speed),
     ("v", Kind::Speed),
 ];
 /// Words that mark a force at the platform.
-const REFERENCE_WORDS: [&str; 3] = ["ref", "reference", "platform"];
+const REFERENCE_WORDS: [&str; 6] = ["ref", "reference", "referenz", "platform", "plattform", "payload"];
+/// Words that mark what was commanded, not measured.
+const COMMAND_WORDS: [&str; 9] =
+    ["soll", "setpoint", "target", "command", "commanded", "cmd", "desired", "des", "demand"];
 
-/// Guesses the signals of columns with these names.
-pub fn guess(names: &[String], draft: &mut Draft) {
+/// Guesses the signals of columns with these names and, if the log states them apart from the names, units.
+pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
     let has = |name: &str| names.iter().any(|known| known == name);
     let mut unknown = Vec::new();
     let mut found: Vec<ColumnGuess> = Vec::new();
-    for name in names {
+    for (place, name) in names.iter().enumerate() {
         if POSE_COLUMNS.contains(&name.as_str()) || WRENCH_COLUMNS.contains(&name.as_str()) {
             continue;
         }
-        let Some((key, factor)) = signal(name) else {
+        let Some((key, factor)) = signal(name, units.get(place).map_or("", String::as_str)) else {
             unknown.push(name.clone());
             continue;
         };
@@ -101,11 +117,19 @@ pub fn guess(names: &[String], draft: &mut Draft) {
         draft.notes.push(format!("{TIME_COLUMN}: no column looks like the time; name it under [log.columns]"));
     }
     for cable in &draft.cables {
-        for (of, cables) in [("force_n", &forces), ("length_m", &lengths)] {
+        for (of, cables) in [(FORCE, &forces), (LENGTH, &lengths)] {
             if !cables.contains(cable) {
-                draft.notes.push(format!("{cable}.{of}: no column looks like it; name it under [log.columns]"));
+                draft.notes.push(format!("{cable}{of}: no column looks like it; name it under [log.columns]"));
+                draft.missing.push(format!("{cable}{of}"));
             }
         }
+    }
+    let is_second = |cable: &&String| forces.contains(cable) && !lengths.contains(cable) && !lengths.is_empty();
+    if let Some(second) = draft.cables.iter().find(is_second) {
+        draft.notes.push(format!(
+            "{second}.force_n: if this is the force at the far end of another cable, name its column there as NAME.reference_n, \
+             and remove this cable"
+        ));
     }
     if cables_with("reference_n").is_empty() {
         draft.notes.push(
@@ -129,8 +153,9 @@ pub fn guess(names: &[String], draft: &mut Draft) {
     draft.columns = found;
 }
 
-/// Returns the probable signal of a column, and the factor to its unit.
-fn signal(name: &str) -> Option<(String, f64)> {
+/// Returns the probable signal of a column, and the factor to its unit, which the name or the line of units states. One with a unit of something else is
+/// none, whatever its name.
+fn signal(name: &str, stated_unit: &str) -> Option<(String, f64)> {
     if name == TIME_COLUMN {
         return Some((name.to_owned(), 1.0));
     }
@@ -141,11 +166,15 @@ fn signal(name: &str) -> Option<(String, f64)> {
         return Some((name.to_owned(), 1.0));
     }
     let lower = name.to_lowercase();
+    let stated_unit = stated_unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
     let (words, unit) = parts(&lower);
-    let by_unit = unit.and_then(|unit| UNITS.iter().find(|(of, ..)| *of == unit));
+    let unit = unit.or_else(|| Some(stated_unit.as_str()).filter(|unit| !unit.is_empty()));
+    if words.iter().any(|word| COMMAND_WORDS.contains(&word.as_str())) {
+        return None;
+    }
     let by_word = || words.iter().find_map(|word| WORDS.iter().find(|(of, _)| of == word));
-    let (kind, factor) = match by_unit {
-        Some((_, kind, factor)) => (*kind, *factor),
+    let (kind, factor) = match unit {
+        Some(unit) => UNITS.iter().find(|(of, ..)| *of == unit).map(|(_, kind, factor)| (*kind, *factor))?,
         None => (by_word()?.1, 1.0),
     };
     let number = words.iter().rev().find(|word| word.bytes().all(|byte| byte.is_ascii_digit()));
@@ -210,8 +239,20 @@ mod tests {
             ("platform force 4 [N]", "cable4.reference_n", 1.0),
             ("winch.length_m", "winch.length_m", 1.0),
         ] {
-            assert_eq!(signal(name), Some((key.to_owned(), factor)), "{name}");
+            assert_eq!(signal(name, ""), Some((key.to_owned(), factor)), "{name}");
         }
-        assert_eq!([signal("note"), signal("temperature [°C]")], [None, None]);
+        for name in ["note", "temperature [°C]", "Position [rev]", "load torque [Nm]", "F_soll", "target speed [m/s]"]
+        {
+            assert_eq!(signal(name, ""), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_line_of_units_counts_where_the_name_has_none() {
+        assert_eq!(signal("Kraft", "kN"), Some(("cable1.force_n".to_owned(), 1e3)));
+        assert_eq!(signal("Weg 2", "[mm]"), Some(("cable2.length_m".to_owned(), 1e-3)));
+        assert_eq!(signal("Weg 2 [m]", "mm"), Some(("cable2.length_m".to_owned(), 1.0)));
+        assert_eq!(signal("Weg", ""), Some(("cable1.length_m".to_owned(), 1.0)));
+        assert_eq!(signal("Position", "rev"), None);
     }
 }

@@ -12,6 +12,10 @@ const SIGMA_PER_FORCE_1_PER_M: f64 = 100.0;
 /// Force that is assumed where none is known, N.
 const USUAL_FORCE_N: f64 = 10.0;
 
+/// Ends of the keys of a cable's signals.
+pub const FORCE: &str = ".force_n";
+pub const LENGTH: &str = ".length_m";
+
 /// A column of a CSV log and its probable signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnGuess {
@@ -33,6 +37,8 @@ pub struct Draft {
     /// Keys and values under `[log]`.
     pub paths: Vec<(&'static str, String)>,
     pub columns: Vec<ColumnGuess>,
+    /// Keys of the forces and lengths without a column.
+    pub missing: Vec<String>,
     pub has_pose: bool,
     /// Signals that could not be guessed, as comments.
     pub notes: Vec<String>,
@@ -49,6 +55,7 @@ impl Draft {
             cables: Vec::new(),
             paths: Vec::new(),
             columns: Vec::new(),
+            missing: Vec::new(),
             has_pose: false,
             notes: Vec::new(),
         }
@@ -72,10 +79,29 @@ impl Draft {
         draft
     }
 
+    /// Returns the draft with the cable's other signal, else the time, in place of each one without a column, so that the samples can be read.
+    pub fn with_stand_ins(&self) -> Self {
+        let mut draft = self.clone();
+        for key in &self.missing {
+            let other = match key.strip_suffix(FORCE) {
+                Some(cable) => format!("{cable}{LENGTH}"),
+                None => key.replace(LENGTH, FORCE),
+            };
+            let stand_in = if self.missing.contains(&other) { TIME_COLUMN } else { other.as_str() };
+            let guess = self.columns.iter().find(|guess| guess.key == stand_in);
+            let column = guess.map_or(stand_in, |guess| guess.column.as_str()).to_owned();
+            draft.columns.push(ColumnGuess { key: key.clone(), column, factor: 1.0 });
+        }
+        draft
+    }
+
     /// Takes the usual interval of the samples, s, and the mean force, N, if there are samples.
     pub fn set_beginning(&mut self, beginning: Option<(f64, f64)>) {
         if let Some((interval_s, force_n)) = beginning {
             self.interval_s = Some(interval_s);
+            if self.missing.iter().any(|key| key.ends_with(FORCE)) {
+                return;
+            }
             let sigma_n_per_m = one_digit(SIGMA_PER_FORCE_1_PER_M * force_n);
             let ParameterRow { min, max, .. } = FRICTION[SIGMA];
             if (min..=max).contains(&sigma_n_per_m) {
@@ -100,7 +126,7 @@ impl Draft {
 
     /// Returns the robot file.
     pub fn text(&self) -> String {
-        let Self { name, interval_s, sigma_n_per_m, cables, paths, columns, has_pose, notes } = self;
+        let Self { name, interval_s, sigma_n_per_m, cables, paths, columns, has_pose, notes, .. } = self;
         let mut text = String::from(
             "# A robot file to start from, made of a log. What is marked with `?` is to be checked on the machine.\n",
         );

@@ -77,7 +77,8 @@ impl CableLog<'_> {
     pub(super) fn passes(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {
         let mut outcome = self.pass(self.counts, start)?;
         let told = self.newly_determined(self.counts, &outcome.naming, held);
-        if !outcome.is_cut_short() && told.iter().any(|parameter| !start.free.contains(parameter)) {
+        // Even if the search was cut short: what it wasted its work on may be these.
+        if told.iter().any(|parameter| !start.free.contains(parameter)) {
             start.free.extend(told);
             outcome = self.pass(self.counts, start).unwrap_or(outcome);
         }
@@ -271,18 +272,22 @@ impl CableLog<'_> {
         )
     }
 
-    /// Returns which of the held parameters the log determines once the model has the effects that were missing.
+    /// Returns which of the held parameters the log determines once the model has the first of the effects that were missing, or the first two, and so on:
+    /// the later ones may stand for what is held.
     fn newly_determined(&self, counts: &[bool], naming: &Naming, held: &[Parameter]) -> Vec<Parameter> {
-        if held.is_empty() || naming.named.is_empty() {
+        if held.is_empty() {
             return Vec::new();
         }
         let bench = self.bench(counts);
-        let mut with_all = naming.model.model();
-        with_all.free.extend(held);
-        let trial = bench.try_one(&with_all);
-        let (_, all) = crate::certainty::undetermined::vagueness(&bench.problem(&trial.free, None), &[trial.values]);
-        let is_told =
-            |(vagueness, of): &(f64, crate::search::solve::Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
-        all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect()
+        let told_by = |named: &Trial| -> Vec<Parameter> {
+            let mut with_all = named.model();
+            with_all.free.extend(held);
+            let trial = bench.try_one(&with_all);
+            let (_, all) =
+                crate::certainty::undetermined::vagueness(&bench.problem(&trial.free, None), &[trial.values]);
+            let is_told = |(vagueness, of): &(f64, Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
+            all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect()
+        };
+        naming.ladder.iter().skip(1).map(told_by).find(|told| !told.is_empty()).unwrap_or_default()
     }
 }

@@ -3,6 +3,7 @@
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, Values};
 
+use super::evidence::inflation;
 use super::{LEAST_GAIN, LEAST_SIZE, Search, Set, set_of, without};
 use crate::candidates::catalogue::{fitted, has, starts};
 use crate::candidates::ripple::{period_of, periods};
@@ -39,10 +40,16 @@ impl Search<'_, '_> {
         };
         let friction = self.beside(found, &lacking(true));
         let enough = self.least_gain(&model);
-        if friction.iter().any(|(_, trial)| gains(&model, trial, enough)) {
+        // Friction that cannot enter, because it was refused or because what else is missing leaves it no evidence, keeps nothing from its turn.
+        let can_enter = |(effect, trial): &(Effect, Trial)| {
+            !self.refused.contains_key(effect)
+                && gains(&model, trial, enough)
+                && self.delta_bic(&model, trial, inflation(self.bench, trial, &fitted(*effect))) < 0.0
+        };
+        if friction.iter().any(can_enter) {
             return friction;
         }
-        self.beside(found, &lacking(false))
+        [friction, self.beside(found, &lacking(false))].concat()
     }
 
     /// Fits the model with one more effect, for each of several.

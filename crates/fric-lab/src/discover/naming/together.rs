@@ -45,7 +45,7 @@ impl Search<'_, '_> {
         }
         let beyond = self.set_aside();
         let mut round = self.round(found);
-        round.retain(|(effect, _)| !effect.is_friction() && !beyond.contains_key(effect));
+        round.retain(|(effect, _)| !beyond.contains_key(effect));
         for set in self.strong_sets(&model, &round, MOST_EFFECTS.saturating_sub(found.len())) {
             let mut with = found.clone();
             self.add(&mut with, &set);

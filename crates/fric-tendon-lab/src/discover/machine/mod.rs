@@ -21,8 +21,10 @@ use crate::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
 use crate::identify::unknown::Unknown;
 use crate::run::{Run, RunSample};
 
-/// Maximum number of samples to compare. Shapes are quasi-static, and turning points are kept.
+/// Maximum number of samples to compare in the search, and in the last fit. Shapes are quasi-static, and turning points are kept. But between so few samples
+/// a lag is only interpolated, and a step has no exact time.
 const MOST_SAMPLES: usize = 200;
+const MOST_FITTED: usize = 800;
 /// Number of candidates with a name, and of others, that are fitted in each step, in the order of their predicted gains.
 const MOST_TRIALS: usize = 4;
 const MOST_OTHER_TRIALS: usize = 3;
@@ -99,16 +101,14 @@ struct Place {
 
 /// Searches for wrong numbers. Returns `None` if tensions and markers cannot be compared.
 pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
-    let kept = thinned_to(run.samples(), MOST_SAMPLES);
-    let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
-    let run = Run::new(samples, run.disk_count()).ok()?;
     let candidates = Candidate::all(file.tables(), run.has_markers());
-    let mut search = Search { joint: Joint::new(file, &run, &candidates)?, candidates };
+    let (few, all) = (of_samples(run, MOST_SAMPLES)?, of_samples(run, MOST_FITTED)?);
+    let mut search = Search { joint: Joint::new(file, &few, &candidates)?, candidates };
     let start = search.joint.start()?;
     let (common, units) = (search.joint.common(), search.joint.units(&start));
     let jacobian = search.joint.jacobian(&start)?;
     let point = search.joint.fitted(&start, &common, &jacobian, &[Unknown::SharedMu], units)?;
-    let before = search.settled(point, common)?;
+    let mut before = search.settled(point, common)?;
     let mut entries: Vec<Entry> = Vec::new();
     let mut now = before.clone();
     while entries.len() < MOST_CANDIDATES {
@@ -120,7 +120,52 @@ pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
     if entries.len() > 1 {
         (entries, now) = search.reconsidered(entries, now, &before)?;
     }
+    if !entries.is_empty() && all.samples().len() > few.samples().len() {
+        let is_stepping = entries.iter().any(|entry| entry.candidate == Candidate::Temperature);
+        let step_nm = is_stepping.then(|| search.joint.found(&now.point, Unknown::CommonShift));
+        let step_s = step_nm.and_then(|step_nm| step_time_s(run, search.joint.step_s()?, step_nm));
+        let count = search.count(&now.point);
+        let stated_s = step_s.or_else(|| search.joint.step_s());
+        search = Search { joint: Joint::new(file, &all, &search.candidates)?, ..search };
+        search.joint.set_step_s(stated_s);
+        before = search.settled(search.joint.again(&before.point)?, before.set)?;
+        now = search.settled(search.joint.again(&now.point)?, now.set)?;
+        let more = search.count(&now.point) / count;
+        entries.iter_mut().for_each(|entry| entry.gain *= more);
+    }
     search.named(file, &entries, &before, &now)
+}
+
+/// Returns a run with at most so many of its samples besides the turning points.
+fn of_samples(run: &Run, most: usize) -> Option<Run> {
+    let kept = thinned_to(run.samples(), most);
+    let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
+    Run::new(samples, run.disk_count()).ok()
+}
+
+/// Returns the time of a step of all gratings, s, which is known to within the samples that a search has kept: where the mean shift leaves the straight
+/// line between them. No turning point of the tension lies there.
+fn step_time_s(run: &Run, near_s: f64, step_nm: f64) -> Option<f64> {
+    let kept = thinned_to(run.samples(), MOST_SAMPLES);
+    let sample = |place: usize| run.samples().get(place);
+    let after = kept.iter().position(|place| sample(*place).is_some_and(|sample| sample.time_s > near_s))?;
+    let (from, to) = (*kept.get(after.checked_sub(1)?)?, *kept.get(after)?);
+    let mean_nm = |place: usize| -> f64 {
+        let shifts = sample(place).map_or(&[][..], |sample| &sample.shift_nm);
+        let live = shifts.iter().filter(|shift_nm| shift_nm.is_finite());
+        let (sum_nm, count) = live.fold((0.0, 0.0), |(sum, count), shift_nm| (sum + shift_nm, count + 1.0));
+        sum_nm / count
+    };
+    let time_s = |place: usize| sample(place).map_or(f64::NAN, |sample| sample.time_s);
+    let (first_nm, last_nm) = (mean_nm(from), mean_nm(to) - step_nm);
+    let straight_nm =
+        |place| first_nm + (last_nm - first_nm) * (time_s(place) - time_s(from)) / (time_s(to) - time_s(from));
+    let squares = |begin: usize| -> f64 {
+        let off = |place: usize| mean_nm(place) - straight_nm(place) - if place >= begin { step_nm } else { 0.0 };
+        (from + 1..to).map(off).filter(|off_nm| off_nm.is_finite()).map(|off_nm| off_nm * off_nm).sum()
+    };
+    let begin = (from + 1..=to).min_by(|one, other| squares(*one).total_cmp(&squares(*other)))?;
+    Some(0.5 * (time_s(begin - 1) + time_s(begin)))
 }
 
 struct Search {
@@ -280,7 +325,7 @@ impl Search {
             let set = self.set_of(&before.set, &others);
             let fresh: Vec<Unknown> =
                 others.iter().flat_map(|candidate| candidate.frees(&self.joint.runs.given)).collect();
-            let step_s = self.joint.runs.given.gratings.as_ref().and_then(|table| table.common_step_s);
+            let step_s = self.joint.step_s();
             let point = self.joint.fitted(&now.point, &set, &now.jacobian, &fresh, now.units)?;
             let mut without = self.settled(point, set)?;
             match self.enter(&mut without, &others) {
@@ -290,11 +335,8 @@ impl Search {
                     continue;
                 }
                 Some((entry, place)) => {
-                    if entry.candidate != entries[at].candidate
-                        && others.contains(&Candidate::Temperature)
-                        && let Some(gratings) = &mut self.joint.runs.given.gratings
-                    {
-                        gratings.common_step_s = step_s;
+                    if entry.candidate != entries[at].candidate && others.contains(&Candidate::Temperature) {
+                        self.joint.set_step_s(step_s);
                     }
                     now = place;
                     entries[at] = entry;

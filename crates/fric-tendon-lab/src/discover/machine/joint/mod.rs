@@ -122,6 +122,23 @@ impl Joint {
         self.point(self.moved(&start, self.place(unknown)?, distance), None)
     }
 
+    /// Returns the state of a point with another run of the same file and candidates.
+    pub fn again(&self, other: &Point) -> Option<Point> {
+        self.point(other.state.clone(), None)
+    }
+
+    /// Returns the time from which on all gratings are shifted, s.
+    pub fn step_s(&self) -> Option<f64> {
+        self.runs.given.gratings.as_ref()?.common_step_s
+    }
+
+    /// Sets this time.
+    pub fn set_step_s(&mut self, step_s: Option<f64>) {
+        if let Some(gratings) = &mut self.runs.given.gratings {
+            gratings.common_step_s = step_s;
+        }
+    }
+
     fn point(&self, state: State, near: Option<&Point>) -> Option<Point> {
         let evaluation = self.runs.evaluate(&state, near.map(|near| &*near.evaluation))?;
         let rows = evaluation.runs.iter().flat_map(|run| &run.rows);

@@ -1,0 +1,123 @@
+//! What hides the friction that a model lacks, or that it has wrong: a zero and a slope of the sensor.
+
+use std::f64::consts::TAU;
+
+use fric_core::effects::Effect;
+use fric_core::parameters::{MU, VISCOUS};
+use fric_core::robot::file::RobotFile;
+use fric_core::{CableInput, Sample};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, Verdict, discover};
+use fric_lab::fit::{Measurements, Progress, Reference};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+
+const TRUE_MU: f64 = 0.025;
+const SIGMA_N_PER_M: f64 = 1200.0;
+const TRUE_VISCOUS_N_S_PER_M: f64 = 0.8;
+const CYCLE_S: f64 = 0.01;
+
+/// A place that goes there and back at some speeds between small steps, m, as on a bench.
+fn places_m() -> Vec<f64> {
+    let mut places_m = vec![0.0];
+    let mut go = |to_m: f64, speed_m_per_s: f64| {
+        let mut place_m = places_m.last().copied().unwrap_or(0.0);
+        while (to_m - place_m).abs() > 1e-9 {
+            place_m += (to_m - place_m).clamp(-speed_m_per_s * CYCLE_S, speed_m_per_s * CYCLE_S);
+            places_m.push(place_m);
+        }
+        places_m.extend([place_m; 30]);
+    };
+    for _ in 0..2 {
+        for step_m in [0.0005, 0.0015, 0.0035, 0.0085, 0.0185, 0.0085, 0.0045, 0.0035] {
+            go(step_m, 0.05);
+        }
+        for speed_m_per_s in [0.02, 0.08, 0.2, 0.3] {
+            go(0.4, speed_m_per_s);
+            go(0.05, speed_m_per_s);
+        }
+    }
+    places_m
+}
+
+/// Looks at a log of a sensor with a zero and a slope of its own, and forces so many times as large as usual here. The cable wraps two bearings by a quarter turn each; given is a wrong μ and no viscous
+/// friction, or another than the true one.
+fn look(size: f64, zero_n: f64, gain: f64, given_viscous_n_s_per_m: f64) -> CableDiscovery {
+    let text = format!(
+        "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = {CYCLE_S}\n[[cable]]\nname = \"w\"\n\
+         pulleys = [{{ wrap_deg = 90.0 }}, {{ wrap_deg = 90.0 }}]\n\
+         friction = {{ mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = {given_viscous_n_s_per_m} }}\n"
+    );
+    let robot = RobotFile::parse(&text, "bench").unwrap();
+    let mut measurements = Measurements::new(&robot.params(), Reference::Forces);
+    measurements.start_log();
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let (mut held_n, mut last_m) = ([0.0_f64; 2], 0.0);
+    for (cycle, length_m) in (0_i32..).zip(places_m()) {
+        let time_s = CYCLE_S * f64::from(cycle);
+        let way_m = length_m - std::mem::replace(&mut last_m, length_m);
+        let load_n = size * (13.0 + 5.0 * (TAU * time_s / 17.0).sin() + 0.8 * (TAU * time_s / 5.1).sin());
+        let mut force_n = load_n;
+        for held_n in &mut held_n {
+            // The bearing carries √2 times the mean of the forces on both sides.
+            let greatest_n = TRUE_MU * 2.0_f64.sqrt() * (force_n - 0.5 * *held_n);
+            if way_m.abs() > 0.0 {
+                let end_n = greatest_n * way_m.signum();
+                *held_n = end_n + (*held_n - end_n) * (-size * SIGMA_N_PER_M / 2.0 * way_m.abs() / greatest_n).exp();
+            }
+            force_n -= *held_n + size * TRUE_VISCOUS_N_S_PER_M * way_m / CYCLE_S;
+        }
+        let shown_n = gain * force_n + zero_n + 0.03 * normal();
+        measurements.add(&Sample {
+            stamp_nanos: i64::from(cycle) * 10_000_000,
+            cables: &[CableInput { sensor_force_n: shown_n, length_m, speed_m_per_s: way_m / CYCLE_S }],
+            reference_force_n: &[load_n + 0.015 * normal()],
+            pose: None,
+            outside_wrench: None,
+        });
+    }
+    discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0)
+}
+
+fn effects(found: &CableDiscovery) -> Vec<Effect> {
+    let mut effects: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+    effects.sort_unstable();
+    effects
+}
+
+fn assert_near(value: f64, truth: f64, tolerance: f64) {
+    assert!((value / truth - 1.0).abs() < tolerance, "{value}, {truth}");
+}
+
+/// A zero leaves viscous friction no evidence as long as it is not named itself: both are named, however they compare in size.
+#[test]
+fn viscous_friction_keeps_no_zero_from_its_turn() {
+    for zero_n in [0.1, 0.3, 0.45, 0.6, 1.0] {
+        let found = look(1.0, zero_n, 1.0, 0.0);
+        assert_eq!(
+            (effects(&found), found.verdict),
+            (vec![Effect::Viscous, Effect::SensorOffset], Verdict::Extended),
+            "{zero_n} N"
+        );
+        assert_near(found.after.values[VISCOUS], TRUE_VISCOUS_N_S_PER_M, 0.1);
+        assert_near(found.after.values[Effect::SensorOffset.places().start], zero_n, 0.1);
+    }
+}
+
+/// A sensor that shows too little hides the friction, whose given values are kept then. Once the slope is known they are fitted, so that nothing else stands
+/// for their errors.
+#[test]
+fn friction_that_a_wrong_slope_hides_is_fitted_beside_it() {
+    for (gain, given_viscous_n_s_per_m, expected) in [
+        (0.5, 1.5, vec![Effect::SensorGain]),
+        (0.7, 1.5, vec![Effect::SensorGain]),
+        (0.225, 0.0, vec![Effect::Viscous, Effect::SensorGain]),
+    ] {
+        let found = look(5.0, 0.0, gain, given_viscous_n_s_per_m);
+        assert_eq!((effects(&found), found.verdict), (expected, Verdict::Extended), "{gain}");
+        assert_near(found.after.values[Effect::SensorGain.places().start], gain, 0.005);
+        assert_near(found.after.values[MU], TRUE_MU, 0.05);
+        assert_near(found.after.values[VISCOUS], 5.0 * TRUE_VISCOUS_N_S_PER_M, 0.15);
+    }
+}
