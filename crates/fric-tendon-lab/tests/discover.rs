@@ -9,6 +9,9 @@ use fric_tendon_lab::discover::{TendonDiscovery, discover};
 use fric_tendon_lab::fbg::Calibration;
 use fric_tendon_lab::simulate::{Experiment, TendonSimulationOptions, simulate};
 use fric_tendon_lab::{ContinuumError, Run, RunSample};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 
 pub(super) const PROTOTYPE: &str = include_str!("../../../examples/tendon-prototype.toml");
 
@@ -214,19 +217,35 @@ fn a_lag_is_found_also_pulled_one_way() {
 /// The search looks at some 200 samples; a run of 350 samples has its lag exactly, and the step of all gratings where it is, between any two samples.
 #[test]
 fn a_lag_and_a_step_are_those_of_all_samples() {
-    let (text, samples) = measured(Experiment::Mixed, 7, &[0.1753]);
-    // Twice the samples: each second one lies between two others.
+    let (text, _) = measured(Experiment::Mixed, 7, &[0.1753]);
+    let noise = TendonSimulationOptions::default();
+    let options = TendonSimulationOptions {
+        experiment: Experiment::Mixed,
+        seed: 7,
+        grating_noise_nm: 0.0,
+        marker_noise_m: 0.0,
+        ..noise
+    };
+    let samples = simulate(ManipulatorFile::parse(&text, "truth").unwrap().params(), &options).unwrap().samples;
+    // Twice the samples, each second one halfway between two others, and noise of their own.
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
     let mut dense = Vec::new();
     for pair in samples.windows(2) {
-        let mean = |of: fn(&RunSample) -> f64| 0.5 * (of(&pair[0]) + of(&pair[1]));
+        let halfway = |one: f64, other: f64| 0.5 * (one + other);
         let mut between = pair[0].clone();
-        between.time_s = mean(|sample| sample.time_s);
-        between.tension_base_n = mean(|sample| sample.tension_base_n);
-        between.marker_m.clear();
-        for (between_nm, next_nm) in between.shift_nm.iter_mut().zip(&pair[1].shift_nm) {
-            *between_nm = 0.5 * (*between_nm + next_nm);
+        between.time_s = halfway(between.time_s, pair[1].time_s);
+        between.tension_base_n = halfway(between.tension_base_n, pair[1].tension_base_n);
+        for (shift_nm, next_nm) in between.shift_nm.iter_mut().zip(&pair[1].shift_nm) {
+            *shift_nm = halfway(*shift_nm, *next_nm);
         }
+        let markers = between.marker_m.iter_mut().flatten().zip(pair[1].marker_m.iter().flatten());
+        markers.for_each(|(place_m, next_m)| *place_m = halfway(*place_m, *next_m));
         dense.extend([pair[0].clone(), between]);
+    }
+    for sample in &mut dense {
+        sample.shift_nm.iter_mut().for_each(|shift_nm| *shift_nm += noise.grating_noise_nm * normal());
+        sample.marker_m.iter_mut().flatten().for_each(|place_m| *place_m += noise.marker_noise_m * normal());
     }
     assert!((300..800).contains(&dense.len()), "{}", dense.len());
     for place in [dense.len() / 3, dense.len() / 2, dense.len() / 2 + 1] {
@@ -235,7 +254,7 @@ fn a_lag_and_a_step_are_those_of_all_samples() {
             *shift_nm += 0.02;
         }
         let discovery = found(&text, &warmer);
-        println!("{:?}", told(&discovery));
+        assert_eq!(told_but_holes(&discovery), ("extended", vec!["temperature"]));
         let effects = &discovery.result.cables[0].effects;
         let from_s =
             effects.iter().find(|effect| effect.kind == "temperature").and_then(|of| of.parameters.get("from_s"));
@@ -252,6 +271,7 @@ fn a_lag_and_a_step_are_those_of_all_samples() {
             sample.tension_base_n = shown.tension_base_n;
         }
         let discovery = found(&text, &late);
+        assert_eq!(told_but_holes(&discovery), ("extended", vec!["tension_lag"]));
         let lag = &discovery.result.cables[0].effects[0];
         let truth_s = dense[count].time_s - dense[0].time_s;
         let (lag_s, error_s) =

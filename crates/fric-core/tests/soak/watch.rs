@@ -169,8 +169,8 @@ impl Watch {
     /// towards `f_c`; where the load has fallen and it falls instead, the stored energy falls with it.
     fn passive(&mut self, way_m: f64, output: &CableOutput, pulley_friction_n: Option<[f64; 8]>) -> Result<(), String> {
         let Some(sigma_n_per_m) = self.law.contact_n_per_m else { return Ok(()) };
-        // The step from a state to the next is rounded as the sliding friction, and so as the tension.
-        let scale_n = output.frictionless_n.abs() + self.law.cable.friction().offset_n.abs();
+        // The step from a state to the next is rounded as the sliding friction, and so as the tension, which is what all contacts before it have stored too.
+        let scale_n = output.frictionless_n.abs() + output.friction_n.abs() + self.law.cable.friction().offset_n.abs();
         let stored = match pulley_friction_n {
             Some(stored_n) => Some((stored_n, scale_n)),
             // What the cable stores is not to be seen while the output is held or slack.

@@ -204,6 +204,7 @@ fn warm_up_was_misjudged(
 /// Returns the standing of each sample before anything is known about the friction.
 pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |cycle| record.reference_n(cycle).is_finite());
+    selection::leave_out_still_forces(record, &mut standings);
     if !record.reference_is_known {
         selection::leave_out_still_references(record, &mut standings);
     }

@@ -1,5 +1,7 @@
 //! Selects the samples that a fit uses, with the reasons for leaving out the others.
 
+use std::ops::Range;
+
 use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::cable::CableRecord;
@@ -54,6 +56,18 @@ pub fn first_look(record: &CableRecord<'_>, has_reference: impl Fn(usize) -> boo
         }
     };
     record.rows.iter().enumerate().map(standing).collect()
+}
+
+/// Leaves out forces of the sensor that stand still, unless they come in coarse steps: also those before the cycle in which that shows.
+pub fn leave_out_still_forces(record: &CableRecord<'_>, standings: &mut [Standing]) {
+    let shown_n = record.shown_forces_n();
+    if CoarseSteps::of(&shown_n).is_some() {
+        return;
+    }
+    let is_still = |run: &Range<usize>| shown_n[run.start].is_finite() && stands_still(&shown_n, run);
+    for run in runs(&shown_n).filter(is_still) {
+        standings.iter_mut().skip(run.start).take(run.len()).for_each(|standing| *standing = Standing::Flagged);
+    }
 }
 
 /// Leaves out references that stand still, unless they come in coarse steps.

@@ -21,12 +21,12 @@ const CYCLE_S: f64 = 0.01;
 fn places_m() -> Vec<f64> {
     let mut places_m = vec![0.0];
     let mut go = |to_m: f64, speed_m_per_s: f64| {
-        let mut place_m = places_m.last().copied().unwrap_or(0.0);
-        while (to_m - place_m).abs() > 1e-9 {
-            place_m += (to_m - place_m).clamp(-speed_m_per_s * CYCLE_S, speed_m_per_s * CYCLE_S);
-            places_m.push(place_m);
+        let mut at_m = places_m.last().copied().unwrap_or(0.0);
+        while (to_m - at_m).abs() > 1e-9 {
+            at_m += (to_m - at_m).clamp(-speed_m_per_s * CYCLE_S, speed_m_per_s * CYCLE_S);
+            places_m.push(at_m);
         }
-        places_m.extend([place_m; 30]);
+        places_m.extend([at_m; 30]);
     };
     for _ in 0..2 {
         for step_m in [0.0005, 0.0015, 0.0035, 0.0085, 0.0185, 0.0085, 0.0045, 0.0035] {

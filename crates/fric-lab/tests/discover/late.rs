@@ -1,9 +1,18 @@
 //! A sensor that follows late and a motion that is known too early are the same to first order.
 
+use std::f64::consts::TAU;
+
 use fric_core::effects::Effect;
-use fric_lab::discover::{Finding, RunnerUp};
+use fric_core::robot::file::RobotFile;
+use fric_core::{CableInput, Sample};
+use fric_lab::discover::{DiscoverOptions, Fault, Finding, RunnerUp, discover};
+use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, Group};
 use fric_lab::simulate::{Simulation, SimulationOptions};
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal, Uniform};
 
 use super::{look, look_by};
 
@@ -40,4 +49,55 @@ fn a_delay_is_told_from_a_lag() {
     let names: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
     assert_eq!(names, [Effect::TimeDelay]);
     assert!(found.findings[0].runner_up.as_ref().is_none_or(|other| !other.is_as_good));
+}
+
+/// Coulomb friction without presliding, in samples 20 to 60 ms apart: the reference is put back by time, not by samples.
+#[test]
+fn a_late_reference_is_put_right_among_irregular_samples() {
+    const DELAY_S: f64 = 0.12;
+    const NOISE_N: f64 = 0.03;
+    let load_n = |time_s: f64| 50.0 + 12.0 * (TAU * time_s / 5.7).sin() + 4.0 * (TAU * time_s / 1.9).sin();
+    let text = "format = \"fric-robot/1\"\nname = \"axis\"\ncycle_s = 0.04\n[[cable]]\nname = \"a\"\n\
+                pulleys = [{ wrap_deg = 180.0 }]\nfriction = { mu = 0.02, sigma_n_per_m = 1e8, viscous_n_s_per_m = 0.0 }\n";
+    let robot = RobotFile::parse(text, "axis").unwrap();
+    let robot_params = robot.params();
+    let mut measurements = Measurements::new(&robot_params, Reference::Forces);
+    measurements.start_log();
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let intervals_s = Uniform::new(0.02, 0.06).unwrap();
+    let mut time_s = 0.0;
+    for _ in 0..3000 {
+        let (phase, turn) = (TAU * time_s / 3.1, 0.1 * TAU / 3.1);
+        // Over half a turn the bearing carries the sum of both forces; paying out, friction holds the cable back: the winch needs less.
+        let friction_ratio = 0.015 * phase.cos().signum();
+        let winch_n = load_n(time_s) * (1.0 - friction_ratio) / (1.0 + friction_ratio);
+        let mut noise_n = || {
+            let deviate: f64 = StandardNormal.sample(&mut random);
+            NOISE_N * deviate
+        };
+        let sensor_force_n = winch_n + noise_n();
+        let reference_n = load_n(time_s - DELAY_S) + noise_n();
+        #[expect(clippy::cast_possible_truncation, reason = "a hundred seconds")]
+        let stamp_nanos = (time_s * 1e9) as i64;
+        measurements.add(&Sample {
+            stamp_nanos,
+            cables: &[CableInput {
+                sensor_force_n,
+                length_m: 1.0 + 0.1 * phase.sin(),
+                speed_m_per_s: turn * phase.cos(),
+            }],
+            reference_force_n: &[reference_n],
+            pose: None,
+            outside_wrench: None,
+        });
+        time_s += intervals_s.sample(&mut random);
+    }
+    let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
+    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
+    let (_, delay_s) = fault.parameters[0];
+    assert!(fault.fault == Fault::ReferenceDelay && (delay_s / DELAY_S - 1.0).abs() < 0.02, "{fault:?}");
+    assert!(found.findings.is_empty(), "{:?}", found.findings);
+    // The noise of both sensors.
+    let left_n = found.after.held_out_n.rms().unwrap();
+    assert!(left_n < 1.1 * NOISE_N * 2.0_f64.sqrt(), "{left_n} N");
 }

@@ -50,6 +50,21 @@ fn references_that_are_none() {
     assert_unharmed(&fit, &clean);
 }
 
+/// All samples of a sensor that hangs are left out, also those before the cycle in which that shows.
+#[test]
+fn forces_that_stand_still_while_the_cable_moves() {
+    let clean = fit(&log(), Weighing::LeastSquares);
+    let mut spoilt = log();
+    let frozen_n = spoilt.0[7_999].cables[0].sensor_force_n;
+    for cycle in &mut spoilt.0[8_000..9_000] {
+        cycle.cables[0].sensor_force_n = frozen_n;
+    }
+    let fit = fit(&spoilt, Weighing::LeastSquares);
+    // The one before has their value, too.
+    assert_eq!(fit.samples.flagged, 1_001);
+    assert_unharmed(&fit, &clean);
+}
+
 /// What the model misses is there for as long as the cable feels it, and stays in; spikes on top of it do not.
 #[test]
 fn a_delay_that_nobody_knows_of_is_no_outlier() {

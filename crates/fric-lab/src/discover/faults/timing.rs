@@ -198,9 +198,9 @@ pub fn may_be_off(record: &CableRecord<'_>, left_n: &[f64]) -> bool {
 }
 
 /// Returns the time of a sample, s since the first sample of its log.
-#[expect(clippy::cast_precision_loss, reason = "a count of samples")]
 fn seconds(record: &CableRecord<'_>, place: usize) -> f64 {
-    place as f64 * record.interval_s
+    let start = record.starts.get(record.log_index(place)).copied().unwrap_or(0);
+    record.time_s(place) - record.time_s(start)
 }
 
 /// Returns the rate of the reference, N/s; NaN where it is unknown.
@@ -209,9 +209,9 @@ fn rates(record: &CableRecord<'_>, references_n: &[f64]) -> Vec<f64> {
     for (start, log) in record.logs() {
         let of_log = references_n.get(start..start + log.len()).unwrap_or_default();
         let middles = rates.iter_mut().skip(start + RATE_SAMPLES);
-        for (rate, around) in middles.zip(of_log.windows(2 * RATE_SAMPLES + 1)) {
+        for ((place, rate), around) in (start..).zip(middles).zip(of_log.windows(2 * RATE_SAMPLES + 1)) {
             let change_n = around[2 * RATE_SAMPLES] - around[0];
-            *rate = change_n / seconds(record, 2 * RATE_SAMPLES);
+            *rate = change_n / (record.time_s(place + 2 * RATE_SAMPLES) - record.time_s(place));
         }
     }
     rates
@@ -251,7 +251,7 @@ impl<'a> Case<'a> {
                 Kind::Delay | Kind::Skew => self.shifted(shift),
             };
             trial = self.bench(&references_n).try_one(&trial.model());
-            let end_s = seconds(&self.record, self.record.rows.len());
+            let end_s = seconds(&self.record, self.record.rows.len().saturating_sub(1));
             if step.delay_s.abs() + step.skew.abs() * end_s < SMALL * self.record.interval_s {
                 break;
             }
@@ -306,61 +306,108 @@ impl<'a> Case<'a> {
     }
 
     /// Returns the references interpolated from later samples; NaN past the ends of each log. Each value gets the same part of the samples' noise: a line
-    /// does this for a delay, which falls at one place between two samples, and a quadratic B-spline nearly does for a skew, which wanders from one
+    /// does this for a delay, which falls at one place between two regular samples, and a quadratic B-spline nearly does for a skew, which wanders from one
     /// sample to the next. With a line what is left would be loud wherever the skew falls on a sample.
     fn shifted(&self, shift: Shift) -> Vec<f64> {
-        let mut references_n = self.record.references_n.to_vec();
-        for (start, log) in self.record.logs() {
-            let given_n = self.record.references_n.get(start..start + log.len()).unwrap_or_default();
-            for (place, reference_n) in references_n.iter_mut().skip(start).take(log.len()).enumerate() {
-                let later_s = shift.delay_s + shift.skew * seconds(&self.record, place);
-                #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-                let at = place as f64 + later_s / self.record.interval_s;
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "not below 0, a place in the log"
-                )]
-                let given_n = |place: f64| {
-                    let given_n = if place < 0.0 { None } else { given_n.get(place as usize) };
-                    given_n.copied().unwrap_or(f64::NAN)
-                };
-                *reference_n = if shift.skew == 0.0 { on_line(at, given_n) } else { on_spline(at, given_n) };
+        let record = &self.record;
+        let mut references_n = record.references_n.to_vec();
+        for (start, log) in record.logs() {
+            let given_n = record.references_n.get(start..start + log.len()).unwrap_or_default();
+            let times_s: Vec<f64> = (start..start + log.len()).map(|place| record.time_s(place)).collect();
+            let knots = Knots { times_s: &times_s, given_n };
+            for (time_s, reference_n) in times_s.iter().zip(references_n.iter_mut().skip(start)) {
+                let since_start_s = time_s - times_s.first().copied().unwrap_or(0.0);
+                let later_s = time_s + shift.delay_s + shift.skew * since_start_s;
+                *reference_n = if shift.skew == 0.0 { knots.on_line(later_s) } else { knots.on_spline(later_s) };
             }
         }
         references_n
     }
 }
 
-/// Interpolates linearly at a place between samples.
-fn on_line(at: f64, given_n: impl Fn(f64) -> f64) -> f64 {
-    let whole = at.floor();
-    let share = at - whole;
-    let before = given_n(whole);
-    if share > 0.0 { before + share * (given_n(whole + 1.0) - before) } else { before }
+/// The references of a log and their times.
+struct Knots<'a> {
+    times_s: &'a [f64],
+    given_n: &'a [f64],
 }
 
-/// Weighs three samples by a quadratic B-spline around a place between samples. It leaves 0.50 to 0.59 of the variance of white noise.
-fn on_spline(at: f64, given_n: impl Fn(f64) -> f64) -> f64 {
-    let nearest = at.round();
-    let off = at - nearest;
-    let weights = [0.5 * (0.5 - off).powi(2), 0.75 - off * off, 0.5 * (0.5 + off).powi(2)];
-    [-1.0, 0.0, 1.0].into_iter().zip(weights).map(|(step, weight)| weight * given_n(nearest + step)).sum()
+impl Knots<'_> {
+    /// Returns the last sample that is not later than a time, and how far that is on the way to the next one, 0 to 1; `None` before the first sample and
+    /// after the last.
+    fn place(&self, time_s: f64) -> Option<(usize, f64)> {
+        let before = self.times_s.partition_point(|knot_s| *knot_s <= time_s).checked_sub(1)?;
+        let at_s = *self.times_s.get(before)?;
+        match self.times_s.get(before + 1) {
+            Some(next_s) => Some((before, (time_s - at_s) / (next_s - at_s))),
+            None => (time_s - at_s <= 0.0).then_some((before, 0.0)),
+        }
+    }
+
+    /// Interpolates linearly.
+    fn on_line(&self, time_s: f64) -> f64 {
+        let Some((before, share)) = self.place(time_s) else { return f64::NAN };
+        let given_n = |place: usize| self.given_n.get(place).copied().unwrap_or(f64::NAN);
+        let before_n = given_n(before);
+        if share > 0.0 { before_n + share * (given_n(before + 1) - before_n) } else { before_n }
+    }
+
+    /// Weighs three samples by a quadratic B-spline. It leaves 0.50 to 0.59 of the variance of white noise. If the samples are not regular, their mean time
+    /// is another, and the slope between them makes up for it.
+    fn on_spline(&self, time_s: f64) -> f64 {
+        let Some((before, share)) = self.place(time_s) else { return f64::NAN };
+        let (nearest, off) = if share < 0.5 { (before, share) } else { (before + 1, share - 1.0) };
+        let around = nearest.checked_sub(1).map(|first| first..first + 3);
+        let [Some([first_n, middle_n, last_n]), Some([first_s, middle_s, last_s])] = [self.given_n, self.times_s]
+            .map(|all| around.clone().and_then(|around| all.get(around)?.first_chunk::<3>().copied()))
+        else {
+            return f64::NAN;
+        };
+        let weights = [0.5 * (0.5 - off).powi(2), 0.75 - off * off, 0.5 * (0.5 + off).powi(2)];
+        let mean = |values: [f64; 3]| weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
+        let slope = (last_n - first_n) / (last_s - first_s);
+        mean([first_n, middle_n, last_n]) + slope * (time_s - mean([first_s, middle_s, last_s]))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// The times of regular samples, and of others.
+    fn times_s() -> [Vec<f64>; 2] {
+        let off = |place: u32| 0.35 * (f64::from(place) * 2.4).sin();
+        [(0..24).map(f64::from).collect(), (0..24).map(|place| f64::from(place) + off(place)).collect()]
+    }
+
     #[test]
     fn a_spline_keeps_lines_and_leaves_alike_much_noise_everywhere() {
-        for percent in 0..200_i32 {
-            let at = 10.0 + f64::from(percent) / 100.0;
-            assert!((on_spline(at, |place| 3.0 - 0.7 * place) - (3.0 - 0.7 * at)).abs() < 1e-12);
-            // The response to a single sample is its weight.
-            let weight = |of: f64| on_spline(at, |place| if place.to_bits() == of.to_bits() { 1.0 } else { 0.0 });
-            let variance: f64 = (8..14).map(|place| weight(f64::from(place)).powi(2)).sum();
-            assert!((0.5..0.595).contains(&variance), "{variance} at {at}");
+        for (times_s, is_regular) in times_s().into_iter().zip([true, false]) {
+            let given_n: Vec<f64> = times_s.iter().map(|time_s| 3.0 - 0.7 * time_s).collect();
+            for percent in 0..200_i32 {
+                let at_s = 10.0 + f64::from(percent) / 100.0;
+                let knots = Knots { times_s: &times_s, given_n: &given_n };
+                assert!((knots.on_spline(at_s) - (3.0 - 0.7 * at_s)).abs() < 1e-12);
+                assert!((knots.on_line(at_s) - (3.0 - 0.7 * at_s)).abs() < 1e-12);
+                // The response to a single sample is its weight.
+                let weight = |of: usize| {
+                    let given_n: Vec<f64> = (0..24).map(|place| if place == of { 1.0 } else { 0.0 }).collect();
+                    Knots { times_s: &times_s, given_n: &given_n }.on_spline(at_s)
+                };
+                let variance: f64 = (7..15).map(|place| weight(place).powi(2)).sum();
+                assert!(!is_regular || (0.5..0.595).contains(&variance), "{variance} at {at_s}");
+            }
+        }
+    }
+
+    #[test]
+    fn past_the_ends_nothing_is_known() {
+        for times_s in times_s() {
+            let knots = Knots { times_s: &times_s, given_n: &times_s };
+            let [first_s, last_s] = [times_s[0], times_s[23]];
+            assert!([first_s, last_s].into_iter().all(|end_s| (knots.on_line(end_s) - end_s).abs() < 1e-12));
+            for beyond_s in [first_s - 0.01, last_s + 0.01] {
+                assert!(knots.on_line(beyond_s).is_nan() && knots.on_spline(beyond_s).is_nan());
+            }
         }
     }
 }

@@ -131,7 +131,9 @@ pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
         before = search.settled(search.joint.again(&before.point)?, before.set)?;
         now = search.settled(search.joint.again(&now.point)?, now.set)?;
         let more = search.count(&now.point) / count;
-        entries.iter_mut().for_each(|entry| entry.gain *= more);
+        for entry in &mut entries {
+            entry.gain *= more;
+        }
     }
     search.named(file, &entries, &before, &now)
 }
