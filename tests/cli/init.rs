@@ -82,6 +82,26 @@ fn a_loggers_own_file_is_read_with_its_dates_units_and_remarks() {
 }
 
 #[test]
+fn units_that_nothing_applies_are_told() {
+    let place = Place::empty();
+    let rows: String = (0..200).map(|at| format!("{},3{}.5,{}\n", f64::from(at) * 0.002, at % 7, at % 50)).collect();
+    place.write("run.csv", format!("time_s,cable1.force_n,cable1.length_m\ns,N,mm\n{rows}"));
+    let columns = "[log.columns]\n\"cable1.length_m\" = { column = \"cable1.length_m\", factor = 0.001 }\n";
+    let robot = |columns: &str| {
+        format!(
+            "format = \"fric-robot/1\"\nname = \"b\"\ncycle_s = 0.002\n{columns}[[cable]]\nname = \"cable1\"\n\
+             pulleys = [{{ wrap_deg = 90.0 }}]\nfriction = {{ mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.0 }}\n"
+        )
+    };
+    place.write("plain.toml", robot(""));
+    place.write("factor.toml", robot(columns));
+    place
+        .run(&["convert", "run.csv", "--model", "plain.toml", "-o", "a.mcap"])
+        .warns(&["`cable1.length_m` is in mm", "factor"]);
+    place.run(&["convert", "run.csv", "--model", "factor.toml", "-o", "b.mcap"]).succeeds();
+}
+
+#[test]
 fn the_rate_is_found_though_a_column_is_not() {
     let place = Place::empty();
     let rows: String = (0..200).map(|at| format!("{},3.0{},{}\n", 4 * at, at % 7, at)).collect();

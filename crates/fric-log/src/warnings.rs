@@ -63,7 +63,8 @@ impl SignalReader {
         let cables = self.counts(Role::Cable);
         if self.log().column_names().is_some() && cables.late_count + cables.clock_step_count > 0 {
             warnings
-                .push("the rows are not in the order of their times: sort them, or read files that are recordings of their own in runs of their own, unless the clock was set back".into());
+                .push("the rows are not in the order of their times: sort them, unless the clock was set back; if the files are separate \
+                 recordings, name each in a command of its own".into());
         }
         warnings.extend(self.length_poses().iter().flat_map(LengthPoses::warnings));
         warnings

@@ -8,7 +8,7 @@ use std::cell::Cell;
 
 use super::workbench::Trial;
 
-/// Number of evaluations in a pass after which no candidate enters any more, none is exchanged, and no further pass begins; and the number by which each
+/// Number of evaluations in a pass after which no candidate enters any more, none is exchanged, and no further pass begins but one with parameters that only the names have made known; and the number by which each
 /// effect in the model raises it, since every search beside it is one over all candidates. What is named until then still has to justify itself, and the
 /// rest is described as usual. Logs with one hidden effect take up to 800, with five 2800, a real drive with three names 1700. Half of both numbers cuts
 /// these short; with double, a log with three wrong names takes twice the time.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::cable::CableRecord;
+use super::held::repeated_forces;
 use super::record::Row;
 use super::steps::CoarseSteps;
 use super::still::{runs, stands_still};
@@ -58,10 +59,11 @@ pub fn first_look(record: &CableRecord<'_>, has_reference: impl Fn(usize) -> boo
     record.rows.iter().enumerate().map(standing).collect()
 }
 
-/// Leaves out forces of the sensor that stand still, unless they come in coarse steps: also those before the cycle in which that shows.
+/// Leaves out forces of the sensor that stand still, also those before the cycle in which that shows; not if they come in coarse steps, or if a slower
+/// device repeats each until the next.
 pub fn leave_out_still_forces(record: &CableRecord<'_>, standings: &mut [Standing]) {
     let shown_n = record.shown_forces_n();
-    if CoarseSteps::of(&shown_n).is_some() {
+    if repeated_forces(record).is_some() || CoarseSteps::of(&shown_n).is_some() {
         return;
     }
     let is_still = |run: &Range<usize>| shown_n[run.start].is_finite() && stands_still(&shown_n, run);

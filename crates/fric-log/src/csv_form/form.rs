@@ -1,5 +1,6 @@
 //! The form of a CSV file: where its rows begin, the separator, and the names of the columns.
 
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 use csv::{ByteRecord, ReaderBuilder};
@@ -60,7 +61,7 @@ impl Form {
         }
         let titled = separators.iter().filter_map(|separator| Self::titled(&filled, *separator));
         // The first of those with equally many columns; `max_by_key` would take the last.
-        let titled = titled.max_by_key(|form| (form.names.len(), std::cmp::Reverse(form.separator)));
+        let titled = titled.max_by_key(|form| (form.names.len(), Reverse(form.separator)));
         titled.or_else(|| Self::from_first_line(beginning, &filled, &separators, comment))
     }
 
@@ -72,22 +73,23 @@ impl Form {
         let counts = rows.iter().map(Vec::len).filter(|count| *count > 1);
         let count = counts.max_by_key(|count| (frequency(*count), *count))?;
         let of_table: Vec<&Vec<String>> = rows.iter().filter(|row| row.len() == count).collect();
-        // Not the last one, which may be cut off or a remark.
-        let usual = of_table.get(3 * of_table.len() / 4)?;
-        // A row has text only where rows usually do.
+        // A full row, not what stands above or below the rows.
+        let usual = of_table.get(of_table.len() / 2..)?.iter().max_by_key(|row| number_count(row))?;
+        // A row has text only where rows usually do, and at least half as many numbers.
         let is_row = |row: &Vec<String>| {
             let fits = |(cell, usual): (&String, &String)| !is_text(cell) || is_text(usual);
-            row.len() == count && number_count(row) > 0 && row.iter().zip(*usual).all(fits)
+            let numbers = number_count(row);
+            row.len() == count && numbers > 0 && 2 * numbers >= number_count(usual) && row.iter().zip(*usual).all(fits)
         };
         let first_row = rows.iter().position(is_row)?;
         let above = rows.get(..first_row)?.iter().rev().take_while(|row| row.len() == count).count();
         let filled_cells =
             |row: &Vec<String>| row.iter().filter(|cell| !cell.is_empty()).collect::<BTreeSet<_>>().len();
-        let distinct = |place: &usize| rows.get(*place).map_or(0, filled_cells);
-        // Lines about the recording have empty cells, a line of units repeats some; the first of equal ones.
-        let title = (first_row - above..first_row).rev().max_by_key(distinct)?;
-        let has_numbers = |place: &usize| rows.get(*place).is_some_and(|row| number_count(row) > 0);
-        let first = (title + 1..=first_row).find(has_numbers)?;
+        let names_most = |place: &usize| rows.get(*place).map(|row| (Reverse(number_count(row)), filled_cells(row)));
+        // Names are no numbers. Lines about the recording have empty cells, a line of units repeats some; the first of equal ones.
+        let title = (first_row - above..first_row).rev().max_by_key(names_most)?;
+        let has_numbers = |place: usize| rows.get(place).is_some_and(|row| number_count(row) > 0);
+        let first = title + if has_numbers(title + 1) { 1 } else { 2 };
         let (names, line) = (rows.get(title)?.clone(), filled.get(first)?);
         let units = rows.get(title + 1).filter(|_| first > title + 1).cloned().unwrap_or_default();
         let (rows_at, first_line) = (line.at as u64, line.number);
@@ -105,7 +107,7 @@ impl Form {
         let separator = separators.iter().copied().max_by_key(|separator| {
             let count = cells(header.text, *separator).len();
             let fits = row.is_none_or(|row| cells(row.text, *separator).len() == count);
-            (count > 1 && fits, count, std::cmp::Reverse(*separator))
+            (count > 1 && fits, count, Reverse(*separator))
         })?;
         let mut names = cells(header.text, separator);
         let lacks_names = number_count(&names) == names.len();
@@ -225,6 +227,15 @@ mod tests {
         // As spreadsheets pad them.
         let padded = "Operator;Smith;\nRate;1000;\n;;\n";
         assert_eq!(form(&format!("{padded}t;F;l\ns;N;m\n{rows}")), expected(';', "t|F|l", "s|N|m", rows, 6));
+        // A date of the recording, and a rate with its unit.
+        let dated = "03.05.2024 12:00:00;;\nRate;1000;Hz\n";
+        assert_eq!(form(&format!("{dated}t;F;l\ns;N;m\n{rows}")), expected(';', "t|F|l", "s|N|m", rows, 5));
+        // One row.
+        let row = "0,001;5,3;1,2\n";
+        assert_eq!(form(&format!("{padded}t;F;l\ns;N;m\n{row}")), expected(';', "t|F|l", "s|N|m", row, 6));
+        // Rows without names, and with an event in some.
+        let rows = "0,0.00,5.0,1.0,start\n1,0.01,5.1,1.0,\n2,0.02,5.2,1.0,\n";
+        assert_eq!(form(&format!(",time_s,F,l,event\n{rows}")), expected(',', "|time_s|F|l|event", "", rows, 2));
         // Times that are dates, and text in every row.
         let rows = "2024-05-03 12:00:00.001\t5.3\tok\n2024-05-03 12:00:00.002\t5.4\tok\n";
         assert_eq!(form(&format!("a\tb\tc\n{rows}")), expected('\t', "a|b|c", "", rows, 2));

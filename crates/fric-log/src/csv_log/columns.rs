@@ -9,6 +9,9 @@ use fric_core::robot::nearest_name;
 use super::CsvError;
 use crate::csv_form::Form;
 
+/// Units that the values have without a factor, and no unit.
+const OWN_UNITS: [&str; 7] = ["", "-", "s", "n", "m", "m/s", "nm"];
+
 /// A column to read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Column {
@@ -101,6 +104,25 @@ impl Columns {
         let speed_m_per_s = of_cables("speed_m_per_s")?;
         let reference_n = if wanted.reference { of_cables("reference_n")? } else { Vec::new() };
         Ok(Self { time, force_n, length_m, speed_m_per_s, reference_n, pose, wrench })
+    }
+
+    /// Returns a remark about columns that are in other units by the line of units, but have no factor.
+    pub fn units_remark(&self, path: &Path, form: &Form) -> Option<String> {
+        let Self { time, force_n, length_m, speed_m_per_s, reference_n, pose, wrench } = self;
+        let groups = [force_n, length_m, speed_m_per_s, reference_n, pose, wrench];
+        let other_unit = |column: &Column| {
+            let unit = form.units.get(column.index)?.trim_matches(['[', ']', '(', ')', ' ']);
+            let is_other = column.has_plain_values() && !OWN_UNITS.contains(&unit.to_lowercase().as_str());
+            is_other.then(|| format!("`{}` is in {unit}", column.table.column))
+        };
+        let all: Vec<String> =
+            std::iter::once(time).chain(groups.into_iter().flatten().flatten()).filter_map(other_unit).collect();
+        (!all.is_empty()).then(|| {
+            let (path, all) = (path.display(), all.join(", "));
+            format!(
+                "`{path}`: by the line of units {all}, which is not applied; state the `factor` under `[log.columns]` in the robot file"
+            )
+        })
     }
 }
 

@@ -27,7 +27,7 @@ use self::units::{Quantity, TimeUnit, Units};
 use crate::csv_form::{COMMENT, Decimals, Form, clock_nanos, scaled, text_of};
 use crate::signals::{Role, SignalPaths};
 
-/// Number of bytes that contain the header and the first row of a file.
+/// Number of bytes that contain the header and enough rows to tell where the table begins.
 const BEGINNING_BYTES: u64 = 1 << 18;
 /// Greatest likely time in seconds: the year 2100, counted from 1970.
 const GREATEST_TIME_S: f64 = 4.1e9;
@@ -108,16 +108,13 @@ impl CsvLog {
             return Err(CsvError::NoHeader { path: path.to_owned(), line: form.first_line });
         }
         let end = last_line_end(&mut file, len).map_err(refused)?.max(form.rows_at);
-        let remarks = (end < len)
-            .then(|| {
-                let path = path.display();
-                format!(
-                    "`{path}` is cut off: its last line has no line end and is left out; if that line is whole, put a line \
+        let cut = (end < len).then(|| {
+            let path = path.display();
+            format!(
+                "`{path}` is cut off: its last line has no line end and is left out; if that line is whole, put a line \
                      end behind it"
-                )
-            })
-            .into_iter()
-            .collect();
+            )
+        });
         Ok(Some(Self {
             files: vec![CsvFile { path: path.to_owned(), file, len, end, form }],
             state: State::Open,
@@ -130,7 +127,7 @@ impl CsvLog {
             row_count: 0,
             unusable_count: 0,
             first_problem: None,
-            remarks,
+            remarks: cut.into_iter().collect(),
         }))
     }
 
@@ -237,6 +234,7 @@ impl CsvLog {
         let Some(CsvFile { path, file, end, form, .. }) = self.files.get(self.current) else { return Ok(()) };
         let mut remarks = Vec::new();
         let columns = Columns::find(path, form, wanted, &mut remarks)?;
+        remarks.extend(columns.units_remark(path, form));
         remarks.retain(|remark| !self.remarks.contains(remark));
         self.remarks.extend(remarks);
         let refused = |source| CsvError::Read { path: path.clone(), source };
@@ -275,7 +273,10 @@ impl CsvLog {
                     Some(stamp_nanos) => {
                         self.row.stamp_nanos = stamp_nanos;
                         cells.fill(columns, &mut self.row, &mut self.units)?;
-                        self.units.add_stamp(stamp_nanos, columns.time.has_plain_values());
+                        // A date needs no unit.
+                        if !cells.text(&columns.time).contains(&b':') {
+                            self.units.add_stamp(stamp_nanos, columns.time.has_plain_values());
+                        }
                         self.row_count += 1;
                         return Ok(true);
                     }

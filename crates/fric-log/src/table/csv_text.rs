@@ -8,7 +8,7 @@ use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 use super::{NumberTable, TableError};
 use crate::csv_form::{COMMENT, Decimals, Form};
 
-/// Number of bytes that contain the header and the first row.
+/// Number of bytes that contain the header and enough rows to tell where the table begins.
 const BEGINNING_BYTES: usize = 1 << 18;
 
 /// Reads all columns. Blanks around cells and a byte order mark are ignored.
@@ -26,6 +26,10 @@ pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
     };
     if form.lacks_header {
         return Err(TableError::NoHeader { path: path.to_owned(), line: form.first_line });
+    }
+    if let (Some(text), Some(column)) = (form.units.first(), form.names.first()) {
+        let (line, column, text) = (form.first_line - 1, column.clone(), text.clone());
+        return Err(TableError::Cell { path: path.to_owned(), line, column, text });
     }
     let rows = usize::try_from(form.rows_at).ok().and_then(|at| whole.get(at..)).unwrap_or_default();
     let mut reader = ReaderBuilder::new()

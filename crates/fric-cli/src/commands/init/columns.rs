@@ -76,9 +76,14 @@ const WORDS: [(&str, Kind); 32] = [
 ];
 /// Words that mark a force at the platform.
 const REFERENCE_WORDS: [&str; 6] = ["ref", "reference", "referenz", "platform", "plattform", "payload"];
-/// Words that mark what was commanded, not measured.
-const COMMAND_WORDS: [&str; 9] =
-    ["soll", "setpoint", "target", "command", "commanded", "cmd", "desired", "des", "demand"];
+/// Words that mark what was commanded, not measured, and beginnings of such words.
+const COMMAND_WORDS: [&str; 8] = ["set", "setpoint", "target", "command", "commanded", "cmd", "desired", "demand"];
+const COMMAND_BEGINNING: &str = "soll";
+/// Units of what is none of the signals.
+const OTHER_UNITS: [&str; 26] = [
+    "nm", "ncm", "rev", "rpm", "1/min", "u/min", "deg", "°", "rad", "deg/s", "°/s", "rad/s", "v", "mv", "mv/v", "a",
+    "ma", "w", "°c", "k", "%", "hz", "bar", "pa", "counts", "inc",
+];
 
 /// Guesses the signals of columns with these names and, if the log states them apart from the names, units.
 pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
@@ -97,7 +102,8 @@ pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
             draft.notes.push(format!("{key}: column {name:?} could be meant too"));
             continue;
         }
-        found.push(ColumnGuess { key, column: name.clone(), factor });
+        let states_unit = name.contains(['[', '(']) || units.get(place).is_some_and(|unit| !unit.is_empty());
+        found.push(ColumnGuess { key, column: name.clone(), factor, states_unit });
     }
     let quantity = |guess: &ColumnGuess, quantity: &str| {
         guess.key.rsplit_once('.').filter(|(_, of)| *of == quantity).map(|(cable, _)| cable.to_owned())
@@ -154,7 +160,7 @@ pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
 }
 
 /// Returns the probable signal of a column, and the factor to its unit, which the name or the line of units states. One with a unit of something else is
-/// none, whatever its name.
+/// none.
 fn signal(name: &str, stated_unit: &str) -> Option<(String, f64)> {
     if name == TIME_COLUMN {
         return Some((name.to_owned(), 1.0));
@@ -169,12 +175,14 @@ fn signal(name: &str, stated_unit: &str) -> Option<(String, f64)> {
     let stated_unit = stated_unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
     let (words, unit) = parts(&lower);
     let unit = unit.or_else(|| Some(stated_unit.as_str()).filter(|unit| !unit.is_empty()));
-    if words.iter().any(|word| COMMAND_WORDS.contains(&word.as_str())) {
+    let is_of_command = |word: &String| COMMAND_WORDS.contains(&word.as_str()) || word.starts_with(COMMAND_BEGINNING);
+    if words.iter().any(is_of_command) || unit.is_some_and(|unit| OTHER_UNITS.contains(&unit)) {
         return None;
     }
     let by_word = || words.iter().find_map(|word| WORDS.iter().find(|(of, _)| of == word));
-    let (kind, factor) = match unit {
-        Some(unit) => UNITS.iter().find(|(of, ..)| *of == unit).map(|(_, kind, factor)| (*kind, *factor))?,
+    let by_unit = unit.and_then(|unit| UNITS.iter().find(|(of, ..)| *of == unit));
+    let (kind, factor) = match by_unit {
+        Some((_, kind, factor)) => (*kind, *factor),
         None => (by_word()?.1, 1.0),
     };
     let number = words.iter().rev().find(|word| word.bytes().all(|byte| byte.is_ascii_digit()));
@@ -238,6 +246,9 @@ mod tests {
             ("F4", "cable4.force_n", 1.0),
             ("platform force 4 [N]", "cable4.reference_n", 1.0),
             ("winch.length_m", "winch.length_m", 1.0),
+            ("Force (filtered) 1", "cable1.force_n", 1.0),
+            ("Kraft des Seils 2 [N]", "cable2.force_n", 1.0),
+            ("Zeit [hh:mm:ss]", "time_s", 1.0),
         ] {
             assert_eq!(signal(name, ""), Some((key.to_owned(), factor)), "{name}");
         }

@@ -23,6 +23,8 @@ pub struct ColumnGuess {
     pub key: String,
     pub column: String,
     pub factor: f64,
+    /// Whether the header states its unit beside the name.
+    pub states_unit: bool,
 }
 
 /// The known content so far.
@@ -61,10 +63,10 @@ impl Draft {
         }
     }
 
-    /// Whether the name of the column of the time has its unit.
+    /// Whether the header states the unit of the time.
     pub fn time_states_its_unit(&self) -> bool {
-        let column = self.columns.iter().find(|guess| guess.key == TIME_COLUMN).map(|guess| guess.column.as_str());
-        column.is_none_or(|name| name.contains(['[', '(']) || name.ends_with("_s") || name.ends_with("_sec"))
+        let time = self.columns.iter().find(|guess| guess.key == TIME_COLUMN);
+        time.is_none_or(|time| time.states_unit || time.column.ends_with("_s") || time.column.ends_with("_sec"))
     }
 
     /// Returns the draft with a factor for the column of the time.
@@ -75,7 +77,7 @@ impl Draft {
         draft.notes.push(format!(
             "{TIME_COLUMN}: column {column:?} does not look like seconds; a factor of {factor:?} is taken"
         ));
-        draft.columns.insert(0, ColumnGuess { key: TIME_COLUMN.to_owned(), column, factor });
+        draft.columns.insert(0, ColumnGuess { key: TIME_COLUMN.to_owned(), column, factor, states_unit: false });
         draft
     }
 
@@ -90,7 +92,7 @@ impl Draft {
             let stand_in = if self.missing.contains(&other) { TIME_COLUMN } else { other.as_str() };
             let guess = self.columns.iter().find(|guess| guess.key == stand_in);
             let column = guess.map_or(stand_in, |guess| guess.column.as_str()).to_owned();
-            draft.columns.push(ColumnGuess { key: key.clone(), column, factor: 1.0 });
+            draft.columns.push(ColumnGuess { key: key.clone(), column, factor: 1.0, states_unit: true });
         }
         draft
     }
@@ -150,7 +152,7 @@ impl Draft {
         }
         if !columns.is_empty() {
             text += "[log.columns]\n";
-            for ColumnGuess { key, column, factor } in columns {
+            for ColumnGuess { key, column, factor, .. } in columns {
                 let factor = if is_one(*factor) { String::new() } else { format!(", factor = {factor:?}") };
                 let _ = writeln!(text, "{key:?} = {{ column = {column:?}{factor} }}");
             }

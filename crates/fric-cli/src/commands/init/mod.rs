@@ -60,10 +60,8 @@ fn parsed(text: &str) -> Outcome<RobotFile> {
 /// seconds, or count them since 1970, only a note tells.
 fn look_at_beginning(logs: &[PathBuf], draft: &mut Draft, has_columns: bool) -> Outcome {
     let is_usual = |of: &Beginning| of.interval_s < GREAT_INTERVAL_S;
-    let beginning_of = |draft: &Draft| {
-        let readable = if has_columns { draft.with_stand_ins() } else { draft.clone() };
-        Outcome::Ok(Beginning::of(Log::open(logs)?, &parsed(&readable.text())?))
-    };
+    let beginning_of =
+        |draft: &Draft| Outcome::Ok(Beginning::of(Log::open(logs)?, &parsed(&draft.with_stand_ins().text())?));
     let mut beginning = beginning_of(draft)?.filter(|of| of.interval_s < GREATEST_CYCLE_S);
     if let Some(slow) = beginning.as_ref().filter(|of| !is_usual(of))
         && (draft.time_states_its_unit() || SECONDS_SINCE_1970.contains(&slow.start_s))

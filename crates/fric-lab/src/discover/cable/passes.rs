@@ -39,7 +39,7 @@ pub(super) struct Outcome {
 }
 
 impl Outcome {
-    /// Whether the search had to come to an end, so that no further pass begins.
+    /// Whether the search had to come to an end, so that no further pass begins but one with parameters that only the names have made known.
     pub(super) fn is_cut_short(&self) -> bool {
         self.effort.is_spent(self.naming.named.len())
     }
@@ -76,9 +76,10 @@ impl CableLog<'_> {
     /// Such a stretch may hide other effects or be mistaken for them, so it is left out. Returns `None` where the noise cannot be estimated.
     pub(super) fn passes(&self, start: &mut workbench::Model, held: &[Parameter]) -> Option<Outcome> {
         let mut outcome = self.pass(self.counts, start)?;
-        let told = self.newly_determined(self.counts, &outcome.naming, held);
+        let held: Vec<Parameter> = held.iter().copied().filter(|held| !start.free.contains(held)).collect();
+        let told = self.newly_determined(self.counts, &outcome.naming, &held);
         // Even if the search was cut short: what it wasted its work on may be these.
-        if told.iter().any(|parameter| !start.free.contains(parameter)) {
+        if !told.is_empty() {
             start.free.extend(told);
             outcome = self.pass(self.counts, start).unwrap_or(outcome);
         }
@@ -288,6 +289,7 @@ impl CableLog<'_> {
             let is_told = |(vagueness, of): &(f64, Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
             all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect()
         };
-        naming.ladder.iter().skip(1).map(told_by).find(|told| !told.is_empty()).unwrap_or_default()
+        let told: Vec<Parameter> = naming.ladder.iter().skip(1).flat_map(told_by).collect();
+        held.iter().copied().filter(|held| told.contains(held)).collect()
     }
 }

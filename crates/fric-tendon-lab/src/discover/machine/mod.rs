@@ -21,10 +21,9 @@ use crate::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
 use crate::identify::unknown::Unknown;
 use crate::run::{Run, RunSample};
 
-/// Maximum number of samples to compare in the search, and in the last fit. Shapes are quasi-static, and turning points are kept. But between so few samples
-/// a lag is only interpolated, and a step has no exact time.
+/// Maximum number of samples to compare in the search. Shapes are quasi-static, and turning points are kept. But between so few samples a lag is only
+/// interpolated, and a step has no exact time, so the last fit has the whole run.
 const MOST_SAMPLES: usize = 200;
-const MOST_FITTED: usize = 800;
 /// Number of candidates with a name, and of others, that are fitted in each step, in the order of their predicted gains.
 const MOST_TRIALS: usize = 4;
 const MOST_OTHER_TRIALS: usize = 3;
@@ -102,7 +101,9 @@ struct Place {
 /// Searches for wrong numbers. Returns `None` if tensions and markers cannot be compared.
 pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
     let candidates = Candidate::all(file.tables(), run.has_markers());
-    let (few, all) = (of_samples(run, MOST_SAMPLES)?, of_samples(run, MOST_FITTED)?);
+    let kept = thinned_to(run.samples(), MOST_SAMPLES);
+    let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
+    let few = Run::new(samples, run.disk_count()).ok()?;
     let mut search = Search { joint: Joint::new(file, &few, &candidates)?, candidates };
     let start = search.joint.start()?;
     let (common, units) = (search.joint.common(), search.joint.units(&start));
@@ -120,14 +121,17 @@ pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
     if entries.len() > 1 {
         (entries, now) = search.reconsidered(entries, now, &before)?;
     }
-    if !entries.is_empty() && all.samples().len() > few.samples().len() {
-        let is_stepping = entries.iter().any(|entry| entry.candidate == Candidate::Temperature);
+    if !entries.is_empty() && run.samples().len() > kept.len() {
+        // A step that the file states has its time.
+        let is_stepping = entries.iter().any(|entry| entry.candidate == Candidate::Temperature)
+            && file.tables().gratings.as_ref().is_none_or(|table| table.common_step_nm.is_none());
         let step_nm = is_stepping.then(|| search.joint.found(&now.point, Unknown::CommonShift));
-        let step_s = step_nm.and_then(|step_nm| step_time_s(run, search.joint.step_s()?, step_nm));
+        let near_s = search.joint.step_s();
+        let step_s =
+            step_nm.zip(near_s).and_then(|(step_nm, near_s)| step_time_s(run, &kept, near_s, step_nm)).or(near_s);
         let count = search.count(&now.point);
-        let stated_s = step_s.or_else(|| search.joint.step_s());
-        search = Search { joint: Joint::new(file, &all, &search.candidates)?, ..search };
-        search.joint.set_step_s(stated_s);
+        search = Search { joint: Joint::new(file, run, &search.candidates)?, ..search };
+        search.joint.set_step_s(step_s);
         before = search.settled(search.joint.again(&before.point)?, before.set)?;
         now = search.settled(search.joint.again(&now.point)?, now.set)?;
         let more = search.count(&now.point) / count;
@@ -138,25 +142,21 @@ pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
     search.named(file, &entries, &before, &now)
 }
 
-/// Returns a run with at most so many of its samples besides the turning points.
-fn of_samples(run: &Run, most: usize) -> Option<Run> {
-    let kept = thinned_to(run.samples(), most);
-    let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
-    Run::new(samples, run.disk_count()).ok()
-}
-
 /// Returns the time of a step of all gratings, s, which is known to within the samples that a search has kept: where the mean shift leaves the straight
 /// line between them. No turning point of the tension lies there.
-fn step_time_s(run: &Run, near_s: f64, step_nm: f64) -> Option<f64> {
-    let kept = thinned_to(run.samples(), MOST_SAMPLES);
+fn step_time_s(run: &Run, kept: &[usize], near_s: f64, step_nm: f64) -> Option<f64> {
     let sample = |place: usize| run.samples().get(place);
     let after = kept.iter().position(|place| sample(*place).is_some_and(|sample| sample.time_s > near_s))?;
     let (from, to) = (*kept.get(after.checked_sub(1)?)?, *kept.get(after)?);
+    let shift_nm = |place: usize, grating: usize| sample(place)?.shift_nm.get(grating).copied();
+    let is_alive = |grating: &usize| (from..=to).all(|place| shift_nm(place, *grating).is_some_and(f64::is_finite));
+    let alive: Vec<usize> = (0..run.disk_count()).filter(is_alive).collect();
+    if alive.is_empty() {
+        return None;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let mean_nm = |place: usize| -> f64 {
-        let shifts = sample(place).map_or(&[][..], |sample| &sample.shift_nm);
-        let live = shifts.iter().filter(|shift_nm| shift_nm.is_finite());
-        let (sum_nm, count) = live.fold((0.0, 0.0), |(sum, count), shift_nm| (sum + shift_nm, count + 1.0));
-        sum_nm / count
+        alive.iter().filter_map(|grating| shift_nm(place, *grating)).sum::<f64>() / alive.len() as f64
     };
     let time_s = |place: usize| sample(place).map_or(f64::NAN, |sample| sample.time_s);
     let (first_nm, last_nm) = (mean_nm(from), mean_nm(to) - step_nm);
@@ -164,7 +164,7 @@ fn step_time_s(run: &Run, near_s: f64, step_nm: f64) -> Option<f64> {
         |place| first_nm + (last_nm - first_nm) * (time_s(place) - time_s(from)) / (time_s(to) - time_s(from));
     let squares = |begin: usize| -> f64 {
         let off = |place: usize| mean_nm(place) - straight_nm(place) - if place >= begin { step_nm } else { 0.0 };
-        (from + 1..to).map(off).filter(|off_nm| off_nm.is_finite()).map(|off_nm| off_nm * off_nm).sum()
+        (from + 1..to).map(off).map(|off_nm| off_nm * off_nm).sum()
     };
     let begin = (from + 1..=to).min_by(|one, other| squares(*one).total_cmp(&squares(*other)))?;
     Some(0.5 * (time_s(begin - 1) + time_s(begin)))
