@@ -13,14 +13,18 @@ const MANY_ERRORS: f64 = 3.0;
 /// A lag has forgotten a sample of which this fraction is left. At 0.1 or 0.002 the result is the same.
 const FORGOTTEN: f64 = 0.02;
 
-/// Returns a series of a cable's samples behind a lag of first order that keeps the fraction `keeps` from one sample to the next; NaN in the samples that
-/// depend on what was before each log or a gap.
-pub fn behind_lag(record: &CableRecord<'_>, series: &[f64], keeps: f64) -> Vec<f64> {
+/// Returns a series of a cable's samples behind a lag of first order; NaN in the samples that depend on what was before each log or a gap. `keeps` is the
+/// fraction that the lag keeps from one sample to the next, as a function of the time between them, s.
+pub fn behind_lag(record: &CableRecord<'_>, series: &[f64], keeps: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut lagging = series.to_vec();
     for (start, log) in record.logs() {
         // What is kept of the first sample after a gap, which stands for all before it.
         let (mut behind, mut memory) = (f64::NAN, 1.0);
-        for number in lagging.iter_mut().skip(start).take(log.len()) {
+        let mut last_s = f64::NAN;
+        for (place, number) in lagging.iter_mut().enumerate().skip(start).take(log.len()) {
+            let time_s = record.time_s(place);
+            let keeps = keeps((time_s - last_s).max(0.0));
+            last_s = time_s;
             if behind.is_finite() && number.is_finite() {
                 behind = keeps * behind + (1.0 - keeps) * *number;
                 memory *= keeps;

@@ -46,7 +46,7 @@ use self::faults::timing::Retimed;
 use self::rest::neighbours::neighbours_of;
 
 use crate::fit::{CableRecord, FitError, Progress, Reference, SampleStore, Stages, StoreError};
-use crate::scale;
+use crate::set_up;
 
 pub use extended::extended;
 pub use faults::correction::{CorrectedFit, Corrections, corrections, fit_cables_corrected};
@@ -182,10 +182,10 @@ impl Discoveries {
         }
     }
 
-    /// Returns warnings about cables whose sensor is on another scale than the reference. `names` are those of the cables.
+    /// Returns warnings about cables whose forces contradict their set-up: scale or direction. `names` are those of the cables.
     #[must_use]
     pub fn warnings(&self, names: &[&str]) -> Vec<String> {
-        scale::warnings(names.iter().copied().zip(self.cables().iter().map(|cable| cable.scale)))
+        set_up::warnings(names.iter().copied().zip(self.cables().iter().map(|cable| cable.set_up)))
     }
 
     /// Returns the text of a robot file with the findings; see [`extended`].

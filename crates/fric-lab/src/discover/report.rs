@@ -15,7 +15,7 @@ use super::rest::neighbours::Neighbour;
 use super::rest::places::Place;
 use crate::fit::{CableRecord, LogValue, Parameter, SampleCounts};
 use crate::replay::Deviation;
-use crate::scale::Scale;
+use crate::set_up::SetUp;
 
 /// The verdict on a cable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,7 +153,7 @@ pub struct CableDiscovery {
     /// Residual of the extended model in each cycle, N; NaN where a sample does not count.
     pub residual_after_n: Vec<f64>,
     /// The forces by the sensor and by the given model beside the reference.
-    pub(crate) scale: Scale,
+    pub(crate) set_up: SetUp,
 }
 
 impl Model {
@@ -215,7 +215,7 @@ impl CableDiscovery {
             times_s: Arc::default(),
             residual_before_n: Vec::new(),
             residual_after_n: Vec::new(),
-            scale: Scale::default(),
+            set_up: SetUp::default(),
         }
     }
 }

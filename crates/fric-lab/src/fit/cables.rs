@@ -18,12 +18,12 @@ use crate::samples::interpolated::measured;
 use crate::samples::record::{LogZero, Measurements, PerLog};
 use crate::samples::selection;
 use crate::samples::selection::Standing;
-use crate::scale::Scale;
 use crate::search::gang::{Gang, Seat};
 use crate::search::pass::Forces;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::solve::{NEAR_ERRORS, Solution, solve};
 use crate::search::vector::Parameter;
+use crate::set_up::SetUp;
 
 /// Another fit is run if the warm-up estimate was wrong by more than this percentage of the samples.
 const MISJUDGED_PERCENT: usize = 1;
@@ -312,15 +312,16 @@ fn force_errors(
 ) -> ForceErrors {
     let gain = record.params.frictionless_gain();
     let before_n = frictionless_errors(record);
-    let mut errors = ForceErrors { before_n, scale: Scale::new(gain), ..ForceErrors::default() };
+    let mut errors = ForceErrors { before_n, set_up: SetUp::new(gain), ..ForceErrors::default() };
     for (cycle, reference_n) in record.references_n.iter().enumerate().filter(|(_, known)| known.is_finite()) {
         errors.reference_n.add(*reference_n);
         let shift_n = zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied();
         let force_n = forces.at(cycle).0 + shift_n.unwrap_or(0.0);
         errors.after_n.add(force_n - reference_n);
-        let shown_n = record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n * gain);
+        let Some(signals) = record.rows.get(cycle).map(|row| row.signals) else { continue };
         // A fitted zero at the platform would hide the scale of a load that does not vary.
-        errors.scale.add(*reference_n, [shown_n, force_n - offset_n]);
+        let forces_n = [signals.sensor_force_n * gain, force_n - offset_n];
+        errors.set_up.add(signals.length_m, *reference_n, forces_n);
     }
     errors
 }

@@ -8,9 +8,9 @@ use crate::replay::{Deviation, WrenchErrors, WrenchReference};
 use crate::samples::cable::{CableRecord, Zeroed};
 use crate::samples::record::LogZero;
 use crate::samples::selection::SampleCounts;
-use crate::scale::Scale;
 use crate::search::optimizer::Termination;
 use crate::search::vector::Parameter;
+use crate::set_up::SetUp;
 
 /// Errors of a cable's force at the platform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,7 +18,7 @@ pub struct ForceErrors {
     /// The reference itself, N.
     pub reference_n: Deviation,
     /// The forces beside the reference.
-    pub(crate) scale: Scale,
+    pub(crate) set_up: SetUp,
     /// Frictionless force minus reference, N.
     pub before_n: Deviation,
     /// Compensated force minus reference, N.

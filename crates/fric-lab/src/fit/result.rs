@@ -12,9 +12,9 @@ use super::summary;
 use crate::discover::RecordingFault;
 use crate::discover::result::FaultResult;
 use crate::errors::{ForceError, WrenchError, WrenchResult};
-use crate::scale;
 use crate::search::optimizer::Termination;
 use crate::search::vector::Parameter;
+use crate::set_up;
 
 /// The fits, by the kind of reference.
 #[derive(Clone, Debug)]
@@ -252,8 +252,8 @@ impl FitResult {
             format!("{}: no sample can be used, values kept: {cause}", names.join(", "))
         };
         let mut warnings: Vec<String> = unused.into_iter().map(told_unused).collect();
-        let scales = fits.cables().iter().map(|fit| fit.errors.scale);
-        warnings.extend(scale::warnings(self.cables.iter().map(|cable| cable.name.as_str()).zip(scales)));
+        let set_ups = fits.cables().iter().map(|fit| fit.errors.set_up);
+        warnings.extend(set_up::warnings(self.cables.iter().map(|cable| cable.name.as_str()).zip(set_ups)));
         for (cable, fit) in self.cables.iter().zip(fits.cables()) {
             // Cables that were not fitted are listed below the tables.
             if !matches!(fit.termination, Termination::Converged | Termination::NothingToFit) {

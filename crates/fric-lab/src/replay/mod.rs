@@ -15,7 +15,7 @@ use fric_core::{AnyCompensator, CableOutput, CableParams, CableStatus, ParamErro
 
 use crate::clock::Clock;
 use crate::fit::readiness::Tension;
-use crate::scale::Scale;
+use crate::set_up::SetUp;
 use crate::weight::Weight;
 
 pub use error::Deviation;
@@ -34,7 +34,7 @@ pub struct CableErrors {
     /// The flags before these cycles.
     pub(crate) flags_before_end: u32,
     /// The forces beside the reference.
-    pub(crate) scale: Scale,
+    pub(crate) set_up: SetUp,
     /// Frictionless force minus reference, N.
     pub before_n: Deviation,
     /// Compensated force minus reference, N.
@@ -43,7 +43,7 @@ pub struct CableErrors {
 
 impl CableErrors {
     fn new(cable: &CableParams) -> Self {
-        Self { scale: Scale::new(cable.frictionless_gain()), ..Self::default() }
+        Self { set_up: SetUp::new(cable.frictionless_gain()), ..Self::default() }
     }
 }
 
@@ -195,10 +195,9 @@ impl Replay {
             by_mass.add(sample.pose.filter(Pose::is_usable), wrenches);
         }
         let outputs = self.compensator.outputs();
-        for (errors, input) in self.cables.iter_mut().zip(sample.cables) {
+        let cables = self.cables.iter_mut().zip(sample.cables).zip(outputs).zip(sample.reference_force_n);
+        for (((errors, input), output), reference_n) in cables {
             errors.tension.add(input.sensor_force_n);
-        }
-        for ((errors, output), reference_n) in self.cables.iter_mut().zip(outputs).zip(sample.reference_force_n) {
             errors.flagged_count += u64::from(!output.status.is_ok());
             errors.flags |= output.status.bits();
             if output.status == CableStatus::POSE_MISSING {
@@ -207,7 +206,8 @@ impl Replay {
                 errors.flags_before_end = errors.flags;
                 errors.poseless_end_count = 0;
             }
-            errors.scale.add(*reference_n, [output.frictionless_n, output.force_at_platform_n]);
+            let forces_n = [output.frictionless_n, output.force_at_platform_n];
+            errors.set_up.add(input.length_m, *reference_n, forces_n);
             errors.before_n.add(output.frictionless_n - reference_n);
             errors.after_n.add(output.force_at_platform_n - reference_n);
         }

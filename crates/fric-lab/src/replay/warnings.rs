@@ -5,7 +5,7 @@ use fric_core::robot::file::{CableTable, RobotFile};
 
 use super::Replay;
 use crate::fit::readiness::{NEGATIVE_ADVICE, NEGATIVE_FORCE, without_reference};
-use crate::scale;
+use crate::set_up;
 
 /// Poses come at 10 Hz or faster, so a log ends no later than this after the last one.
 const POSE_INTERVAL_S: f64 = 0.1;
@@ -34,8 +34,8 @@ impl Replay {
             });
         }
         warnings.extend(self.cable_warnings(robot));
-        let scales = self.cables().iter().map(|cable| cable.scale);
-        warnings.extend(scale::warnings(robot.cable_names().into_iter().zip(scales)));
+        let set_ups = self.cables().iter().map(|cable| cable.set_up);
+        warnings.extend(set_up::warnings(robot.cable_names().into_iter().zip(set_ups)));
         warnings
     }
 

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use fric_core::effects::Effect;
+use fric_core::robot::RobotParams;
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Sample};
 use fric_lab::discover::{DiscoverOptions, Fault, Finding, RunnerUp, discover};
@@ -51,53 +52,70 @@ fn a_delay_is_told_from_a_lag() {
     assert!(found.findings[0].runner_up.as_ref().is_none_or(|other| !other.is_as_good));
 }
 
-/// Coulomb friction without presliding, in samples 20 to 60 ms apart: the reference is put back by time, not by samples.
-#[test]
-fn a_late_reference_is_put_right_among_irregular_samples() {
-    const DELAY_S: f64 = 0.12;
-    const NOISE_N: f64 = 0.03;
+const NOISE_N: f64 = 0.03;
+
+/// Coulomb friction without presliding, in samples 20 to 60 ms apart. The reference is late by `delay_s`, and the sensor follows with the time constant
+/// `lag_s`.
+fn irregular<'a>(robot: &'a RobotParams<'a>, delay_s: f64, lag_s: f64, seed: u64) -> Measurements<'a> {
+    const FINE_S: f64 = 1e-3;
     let load_n = |time_s: f64| 50.0 + 12.0 * (TAU * time_s / 5.7).sin() + 4.0 * (TAU * time_s / 1.9).sin();
-    let text = "format = \"fric-robot/1\"\nname = \"axis\"\ncycle_s = 0.04\n[[cable]]\nname = \"a\"\n\
-                pulleys = [{ wrap_deg = 180.0 }]\nfriction = { mu = 0.02, sigma_n_per_m = 1e8, viscous_n_s_per_m = 0.0 }\n";
-    let robot = RobotFile::parse(text, "axis").unwrap();
-    let robot_params = robot.params();
-    let mut measurements = Measurements::new(&robot_params, Reference::Forces);
+    let mut measurements = Measurements::new(robot, Reference::Forces);
     measurements.start_log();
-    let mut random = ChaCha8Rng::seed_from_u64(5);
-    let intervals_s = Uniform::new(0.02, 0.06).unwrap();
-    let mut time_s = 0.0;
-    for _ in 0..3000 {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let intervals = Uniform::new(20, 60).unwrap();
+    let (mut shown_n, mut next, mut stamp_nanos) = (load_n(0.0), 0, 0);
+    for fine in 0..120_000 {
+        let time_s = FINE_S * f64::from(fine);
         let (phase, turn) = (TAU * time_s / 3.1, 0.1 * TAU / 3.1);
         // Over half a turn the bearing carries the sum of both forces; paying out, friction holds the cable back: the winch needs less.
         let friction_ratio = 0.015 * phase.cos().signum();
         let winch_n = load_n(time_s) * (1.0 - friction_ratio) / (1.0 + friction_ratio);
-        let mut noise_n = || {
-            let deviate: f64 = StandardNormal.sample(&mut random);
-            NOISE_N * deviate
-        };
-        let sensor_force_n = winch_n + noise_n();
-        let reference_n = load_n(time_s - DELAY_S) + noise_n();
-        #[expect(clippy::cast_possible_truncation, reason = "a hundred seconds")]
-        let stamp_nanos = (time_s * 1e9) as i64;
-        measurements.add(&Sample {
-            stamp_nanos,
-            cables: &[CableInput {
-                sensor_force_n,
-                length_m: 1.0 + 0.1 * phase.sin(),
-                speed_m_per_s: turn * phase.cos(),
-            }],
-            reference_force_n: &[reference_n],
-            pose: None,
-            outside_wrench: None,
-        });
-        time_s += intervals_s.sample(&mut random);
+        shown_n += (winch_n - shown_n) * -(-FINE_S / lag_s).exp_m1();
+        if fine == next {
+            let mut noise_n = || {
+                let deviate: f64 = StandardNormal.sample(&mut random);
+                NOISE_N * deviate
+            };
+            measurements.add(&Sample {
+                stamp_nanos,
+                cables: &[CableInput {
+                    sensor_force_n: shown_n + noise_n(),
+                    length_m: 1.0 + 0.1 * phase.sin(),
+                    speed_m_per_s: turn * phase.cos(),
+                }],
+                reference_force_n: &[load_n(time_s - delay_s) + noise_n()],
+                pose: None,
+                outside_wrench: None,
+            });
+            next += intervals.sample(&mut random);
+        }
+        stamp_nanos += 1_000_000;
     }
-    let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
-    let [fault] = found.faults.as_slice() else { panic!("{:?}", found.faults) };
-    let (_, delay_s) = fault.parameters[0];
-    assert!(fault.fault == Fault::ReferenceDelay && (delay_s / DELAY_S - 1.0).abs() < 0.02, "{fault:?}");
-    assert!(found.findings.is_empty(), "{:?}", found.findings);
-    // The noise of both sensors.
-    let left_n = found.after.held_out_n.rms().unwrap();
-    assert!(left_n < 1.1 * NOISE_N * 2.0_f64.sqrt(), "{left_n} N");
+    measurements
+}
+
+/// The reference is put back by time, not by samples; an early one is told from a sensor that follows late.
+#[test]
+fn time_errors_among_irregular_samples() {
+    let text = "format = \"fric-robot/1\"\nname = \"axis\"\ncycle_s = 0.04\n[[cable]]\nname = \"a\"\n\
+                pulleys = [{ wrap_deg = 180.0 }]\nfriction = { mu = 0.02, sigma_n_per_m = 1e8, viscous_n_s_per_m = 0.0 }\n";
+    let robot = RobotFile::parse(text, "axis").unwrap();
+    let robot = robot.params();
+    for (delay_s, seed) in [(0.12, 5), (-0.12, 6), (-0.12, 7)] {
+        let measurements = irregular(&robot, delay_s, 0.0, seed);
+        let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
+        let [fault] = found.faults.as_slice() else { panic!("{delay_s}: {:?}, {:?}", found.faults, found.findings) };
+        let (_, found_s) = fault.parameters[0];
+        assert!(fault.fault == Fault::ReferenceDelay && (found_s / delay_s - 1.0).abs() < 0.02, "{delay_s}: {fault:?}");
+        assert!(found.findings.is_empty(), "{:?}", found.findings);
+        // The noise of both sensors.
+        let left_n = found.after.held_out_n.rms().unwrap();
+        assert!(left_n < 1.1 * NOISE_N * 2.0_f64.sqrt(), "{delay_s}: {left_n} N");
+    }
+    for (lag_s, seed) in [(0.12, 8), (0.2, 9)] {
+        let measurements = irregular(&robot, 0.0, lag_s, seed);
+        let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
+        let names: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+        assert!(names == [Effect::SensorLag] && found.faults.is_empty(), "{lag_s}: {names:?}, {:?}", found.faults);
+    }
 }

@@ -23,8 +23,8 @@ use crate::discover::workbench::{self, Trial, Workbench};
 use crate::fit::{LogValue, SampleCounts, StoreError};
 use crate::replay::Deviation;
 use crate::samples::record::PerLog;
-use crate::scale::Scale;
 use crate::search::problem::Problem;
+use crate::set_up::SetUp;
 
 impl CableLog<'_> {
     /// Returns a table for a rest that has no name.
@@ -126,7 +126,7 @@ impl CableLog<'_> {
         let curves = curves(&self.record, &residual_before_n, &residual_after_n);
         CableDiscovery {
             // A table would make up for any scale.
-            scale: self.scale(&residual_before_n, base.values[OFFSET]),
+            set_up: self.set_up(&residual_before_n, base.values[OFFSET]),
             curves,
             samples,
             reference_variation_n: raw.reference_variation_n(),
@@ -154,14 +154,15 @@ impl CableLog<'_> {
         }
     }
 
-    /// Returns the forces by the sensor and by a model with this residual beside the reference. A zero at the platform, `offset_n`, is no part of the scale.
-    fn scale(&self, residual_n: &[f64], offset_n: f64) -> Scale {
+    /// Returns the forces by the sensor and by a model with this residual beside the reference. A zero at the platform, `offset_n`, would hide the scale of a load that does not vary.
+    fn set_up(&self, residual_n: &[f64], offset_n: f64) -> SetUp {
         let gain = self.raw.params.frictionless_gain();
-        let mut scale = Scale::new(gain);
+        let mut set_up = SetUp::new(gain);
         for ((row, reference_n), residual_n) in self.raw.rows.iter().zip(self.raw.references_n).zip(residual_n) {
-            scale.add(*reference_n, [row.signals.sensor_force_n * gain, residual_n + reference_n - offset_n]);
+            let forces_n = [row.signals.sensor_force_n * gain, residual_n + reference_n - offset_n];
+            set_up.add(row.signals.length_m, *reference_n, forces_n);
         }
-        scale
+        set_up
     }
 
     /// Returns the value of each log of its own in a model, from all samples.

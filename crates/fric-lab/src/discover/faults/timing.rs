@@ -248,8 +248,8 @@ impl<'a> Case<'a> {
             shift = Shift { delay_s: shift.delay_s + step.delay_s, skew: shift.skew + step.skew };
             references_n = match kind {
                 Kind::Lag => {
-                    let keeps = (self.record.interval_s / shift.delay_s.min(-f64::MIN_POSITIVE)).exp();
-                    behind_lag(&self.record, self.record.references_n, keeps)
+                    let time_constant_s = (-shift.delay_s).max(f64::MIN_POSITIVE);
+                    behind_lag(&self.record, self.record.references_n, |past_s| (-past_s / time_constant_s).exp())
                 }
                 Kind::Delay | Kind::Skew => self.shifted(shift),
             };

@@ -37,7 +37,7 @@ impl Search<'_, '_> {
         let of = |trial: Trial| {
             let left_n = self.bench.residuals_n(&trial.values);
             // The filter that the effect undoes.
-            let keeps = 1.0 - self.bench.record.interval_s / trial.values[TIME_CONSTANT];
+            let keeps = |past_s: f64| (1.0 - past_s / trial.values[TIME_CONSTANT]).max(0.0);
             let lagging_n = behind_lag(&self.bench.record, &left_n, keeps);
             let learned = lagging_n.iter().zip(&used).filter(|(left_n, used)| **used && left_n.is_finite());
             (learned.map(|(left_n, _)| left_n * left_n).sum::<f64>(), lagging_n, trial)

@@ -9,7 +9,7 @@ use crate::discover::result::{
     TriedResult,
 };
 use crate::fit::HALF_INTERVAL;
-use crate::scale;
+use crate::set_up;
 use crate::text::{listed, quantity};
 
 impl EffectResult {
@@ -33,7 +33,7 @@ impl EffectResult {
     pub fn remedy(&self) -> String {
         let remedy = self.effect.row().remedy;
         let gain = self.parameters.get("gain").filter(|_| self.effect == Effect::SensorGain);
-        gain.and_then(scale::cause_of_gain).map_or_else(
+        gain.and_then(set_up::cause_of_gain).map_or_else(
             || remedy.to_owned(),
             |cause| format!("the likely cause of such a gain is {cause}; otherwise {remedy}"),
         )

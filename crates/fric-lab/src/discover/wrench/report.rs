@@ -18,7 +18,7 @@ use crate::discover::rest::{WORTH, ranges, wander, with_interpolated};
 use crate::fit::{FitError, Parameter, Row, SampleCounts};
 use crate::replay::Deviation;
 use crate::samples::conditions::conditions;
-use crate::scale::Scale;
+use crate::set_up::SetUp;
 
 /// A finished search.
 pub struct Case<'b, 'a> {
@@ -185,7 +185,7 @@ impl Case<'_, '_> {
             times_s: Arc::clone(&self.times_s),
             residual_before_n,
             residual_after_n,
-            scale: Scale::default(),
+            set_up: SetUp::default(),
         }
     }
 }

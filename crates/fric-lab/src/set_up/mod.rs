@@ -1,0 +1,36 @@
+//! What the forces of a run tell of its set-up: the scale of the sensor and the sign of the length, which are often wrong on the first day.
+
+mod direction;
+mod scale;
+
+use direction::Direction;
+use scale::Scale;
+pub(crate) use scale::cause_of_gain;
+
+/// Sums over a cable's samples, in their order.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct SetUp {
+    scale: Scale,
+    direction: Direction,
+}
+
+impl SetUp {
+    /// Creates empty sums for a cable whose sensor has this frictionless gain.
+    pub fn new(frictionless_gain: f64) -> Self {
+        Self { scale: Scale::new(frictionless_gain), direction: Direction::default() }
+    }
+
+    /// Adds a sample: its length, its reference, and the force at the platform by the sensor without any correction and with the model's.
+    pub fn add(&mut self, length_m: f64, reference_n: f64, forces_n: [f64; 2]) {
+        self.scale.add(reference_n, forces_n);
+        self.direction.add(length_m, reference_n, forces_n[0]);
+    }
+}
+
+/// Returns warnings about cables whose forces contradict their set-up. Cables with the same cause share a line.
+#[must_use]
+pub(crate) fn warnings<'a>(cables: impl Iterator<Item = (&'a str, SetUp)> + Clone) -> Vec<String> {
+    let mut warnings = scale::warnings(cables.clone().map(|(name, cable)| (name, cable.scale)));
+    warnings.extend(direction::warning(cables.map(|(name, cable)| (name, cable.direction))));
+    warnings
+}
