@@ -225,6 +225,29 @@ fn a_force_of_the_other_sign_is_told() {
     }
 }
 
+/// With lengths that shrink where the cable is paid out, friction seems to drive the motion, and no friction is found.
+#[test]
+fn a_length_of_the_other_sign_is_told() {
+    let place = Place::empty();
+    let bench = "format = 'fric-robot/1'\nname = 'bench'\ncycle_s = 0.001\n[[cable]]\nname = 'winch'\n\
+                 pulleys = [{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }]\n\
+                 friction = { mu = 0.02, sigma_n_per_m = 5000.0, viscous_n_s_per_m = 0.5 }\n";
+    place.write("bench.toml", bench);
+    place.run(&["simulate", "--model", "bench.toml", "-o", "log.mcap", "--duration", "40"]).succeeds();
+    place.write("run.csv", Rows::of(&place.read("log.mcap")).plain());
+    let turn = |key: &str| format!("\"winch.{key}\" = {{ column = \"winch.{key}\", factor = -1.0 }}\n");
+    let turned = format!("[log.columns]\n{}{}", turn("length_m"), turn("speed_m_per_s"));
+    place.write("turned.toml", with_columns(bench, &turned));
+    place.run(&["replay", "run.csv", "--model", "bench.toml"]).succeeds();
+    for command in ["replay", "discover"] {
+        let run = place.run(&[command, "run.csv", "--model", "turned.toml"]);
+        run.warns(&["winch: ", "a length of the wrong sign"]);
+    }
+    let fit = ["fit", "run.csv", "--model", "turned.toml", "-o", "fitted.toml", "--parameters", "mu"];
+    let run = place.run_in_vain(&fit).fails(1, &["determines none of the parameters"]);
+    assert!(run.stderr.contains("a length of the wrong sign"), "{run:#?}");
+}
+
 #[test]
 fn rows_that_are_not_in_order_are_told() {
     let place = Place::with_log();

@@ -50,6 +50,20 @@ fn a_known_load_is_the_reference_of_every_command() {
     }
 }
 
+/// A fit that takes a wrong weight for a zero of the sensor says so.
+#[test]
+fn a_zero_that_is_most_of_the_error_is_told() {
+    let place = place_of("{ hanging_mass_kg = 12.0 }");
+    place.write("robot.toml", bench("{ hanging_mass_kg = 5.0 }", 0.02));
+    let run = place.run(&["fit", "log.mcap", "--model", "robot.toml", "-o", "fitted.toml", "--parameters", "offset_n"]);
+    let told = unwrapped(&run.stdout);
+    // 7 kg that the file does not know.
+    assert!(told.contains("a zero and no friction, offset_n of winch is -68."), "{run:#?}");
+    let place = place_of("{ constant_n = 49.05 }");
+    let run = place.run(&["fit", "log.mcap", "--model", "robot.toml", "-o", "fitted.toml"]).succeeds();
+    assert!(!unwrapped(&run.stdout).contains("a zero and no friction"), "{run:#?}");
+}
+
 /// One load tells no gain from an offset: no gain is named, whichever of the two is wrong, and what cannot be told apart is said.
 #[test]
 fn under_one_load_no_gain_is_named() {

@@ -64,8 +64,8 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     };
     let names: Vec<String> = logs.iter().map(|log| shown_path(log)).collect();
     let outcome = FitResult::new(&model.robot, &names, &fits).with_faults(&faults);
-    outcome.check_used()?;
     warn_all(&outcome.warnings(&fits, &readiness));
+    outcome.check_fitted()?;
     let text = rewritten(&model.text, &model.origin, fits.cables())?;
     let mut files = vec![Written::new(fitted_file.complete_with(&text)?, "the robot file with these values")];
     if let Some(report) = report {

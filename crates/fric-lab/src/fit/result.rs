@@ -1,5 +1,7 @@
 //! The machine-readable result of an identification, `format = "fric-fit/1"`, with additional data for reports.
 
+use std::collections::BTreeSet;
+
 use fric_core::parameters::NO_PRESLIDING_N_PER_M;
 use fric_core::robot::file::RobotFile;
 use serde::ser::SerializeMap as _;
@@ -15,6 +17,7 @@ use crate::errors::{ForceError, WrenchError, WrenchResult};
 use crate::search::optimizer::Termination;
 use crate::search::vector::Parameter;
 use crate::set_up;
+use crate::text::listed;
 
 /// The fits, by the kind of reference.
 #[derive(Clone, Debug)]
@@ -223,24 +226,42 @@ impl FitResult {
         summary::describe(self)
     }
 
-    /// Checks that at least one sample was used.
+    /// Checks that samples were used, and that they determine at least one parameter. A file with the values that are kept, or that ran to their bounds, would
+    /// be no result.
     ///
     /// # Errors
-    /// Returns a [`FitError`] with the likely cause if none was.
-    pub fn check_used(&self) -> Result<(), FitError> {
-        let Some(first) = self.cables.first().filter(|_| self.cables.iter().all(|cable| cable.samples == 0)) else {
+    /// Returns a [`FitError`] with the likely cause if not.
+    pub fn check_fitted(&self) -> Result<(), FitError> {
+        if let Some(first) = self.cables.first().filter(|_| self.cables.iter().all(|cable| cable.samples == 0)) {
+            let (cause, advice) = why_unused(&first.left_out);
+            return Err(FitError::new(format!("no sample can be used: {cause}"), advice));
+        }
+        let of_logs = |cable: &FitCableResult| cable.per_log.iter().any(|log| !log.standard_errors.0.is_empty());
+        let is_fitted = |cable: &FitCableResult| !cable.standard_errors.0.is_empty() || of_logs(cable);
+        if self.cables.iter().any(is_fitted) {
             return Ok(());
+        }
+        let at_bound: BTreeSet<&str> =
+            self.cables.iter().flat_map(|cable| &cable.at_bound).map(String::as_str).collect();
+        let at_bound: Vec<&str> = at_bound.into_iter().collect();
+        let ran = if at_bound.is_empty() {
+            String::new()
+        } else {
+            format!("; {} ran to the end of its range", listed(&at_bound))
         };
-        let (cause, advice) = why_unused(&first.left_out);
-        Err(FitError::new(format!("no sample can be used: {cause}"), advice))
+        Err(FitError::new(
+            format!("the log determines none of the parameters that are fitted{ran}"),
+            "Record the run of `fric-cli excite`, or see what else the model lacks: `fric-cli discover` with the same log and model.",
+        ))
     }
 
-    /// Returns warnings that people need beside the summary.
+    /// Returns warnings that people need beside the summary, or beside the error of [`Self::check_fitted`].
     #[must_use]
     pub fn warnings(&self, fits: &Fits, readiness: &Readiness) -> Vec<String> {
         // Cables with the same problem share a line.
         let mut unused: Vec<(&str, Vec<&str>)> = Vec::new();
-        let told = |place: &usize| readiness.is_lacking(*place);
+        let is_told = self.cables.iter().all(|cable| cable.samples == 0);
+        let told = |place: &usize| is_told || readiness.is_lacking(*place);
         for (_, cable) in self.cables.iter().enumerate().filter(|(place, cable)| cable.samples == 0 && !told(place)) {
             let (cause, _) = why_unused(&cable.left_out);
             match unused.iter_mut().find(|(of, _)| *of == cause) {

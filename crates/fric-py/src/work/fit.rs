@@ -97,8 +97,8 @@ pub fn fit(
         })
     })??;
     let result = FitResult::new(file, &runs.names(), &fits).with_faults(&faults);
-    result.check_used()?;
     log::warn(py, &result.warnings(&fits, &readiness))?;
+    result.check_fitted()?;
     let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables())?;
     let cable = |(fit, residuals_n): (&CableFit, Vec<f64>)| {
         let count = fit.fitted.len();

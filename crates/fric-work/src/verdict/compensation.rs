@@ -200,6 +200,7 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     let worse = worse(&all);
     let it = if worse.is_some() { format!("elsewhere {it}") } else { it.to_owned() };
     let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}."));
+    let left = of_zeros(result).map_or(left.clone(), |zeros| format!("{left} {zeros}"));
     let (tone, sentence) = match worse {
         Some(worse) => (Tone::Bad, format!("{worse} {left}")),
         None if greatest <= WORKS => (Tone::Well, left),
@@ -232,6 +233,25 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     Verdict { tone, sentence, todo }
 }
 
+/// Returns a sentence about the cables whose error was a zero more than anything else; `None` without one.
+fn of_zeros(result: &FitResult) -> Option<String> {
+    let zeros = result.cables.iter().filter_map(|cable| {
+        let key = Parameter::all().find(|of| of.place() == OFFSET)?.to_string();
+        let offset_n = cable.parameters.get(&key)?;
+        let is_fitted = cable.standard_errors.get(&key).is_some();
+        // Half of the squares before.
+        let is_most = 2.0 * offset_n * offset_n > cable.before?.rms_n.powi(2);
+        (is_fitted && is_most).then(|| format!("{key} of {} is {offset_n:.1} N", cable.name))
+    });
+    let zeros: Vec<String> = zeros.collect();
+    (!zeros.is_empty()).then(|| {
+        format!(
+            "Most of the error was a zero and no friction, {}: check the zero of the sensor and the reference.",
+            listed(&zeros)
+        )
+    })
+}
+
 /// Returns what is fitted, as a clause, and the word for it.
 fn fitted(result: &FitResult) -> (String, &'static str) {
     let fitted_of = |cable: &FitCableResult| -> Vec<Parameter> {
@@ -246,9 +266,7 @@ fn fitted(result: &FitResult) -> (String, &'static str) {
     let mut names: Vec<String> = result.cables.iter().flat_map(fitted_of).map(|of| of.to_string()).collect();
     names.sort_unstable();
     names.dedup();
-    let fitted =
-        if names.is_empty() { "Nothing is fitted".to_owned() } else { format!("Only {} is fitted", listed(&names)) };
-    (fitted, "the model")
+    (format!("Only {} is fitted", listed(&names)), "the model")
 }
 
 /// Returns the verdict on a hysteresis: the remaining fraction of its width.
