@@ -141,6 +141,7 @@ fn other_names_units_and_signs_give_what_the_log_gives_to_the_printed_digit() {
 
     let info = place.run(&["info", "foreign.csv", "--model", "foreign.toml", "--json", "i.json"]).succeeds().stdout;
     assert!(info.contains("Kraft; cable1 [kg]") && info.contains("9.80665") && info.contains("possible"), "{info}");
+    assert!(info.contains("rows:        400, 1000.0 Hz, longest gap 1.000 ms"), "{info}");
     let info = place.json("i.json");
     assert_eq!(info["columns"][1]["signal"], "cable1.force_n");
     assert_eq!(info["signals"][0]["messages"], 400);
@@ -185,7 +186,7 @@ fn what_is_missing_in_a_table_is_told_in_a_sentence() {
         place.run_in_vain(&[command, "run.csv"]).fails(1, &["no robot file"]).advises(&["--model"]);
     }
     let info = place.run(&["info", "run.csv"]).succeeds().stdout;
-    assert!(info.contains("F1") && info.contains("--model"), "{info}");
+    assert!(info.contains("F1") && info.contains("--model") && info.contains("init"), "{info}");
     let info = place.run(&["info", "run.csv", "--model", "robot.toml"]).succeeds().stdout;
     assert!(unwrapped(&info).contains("has no column `time_s`") && info.contains("impossible"), "{info}");
     place.write("run.csv", "time_s,cable1.force_n,cable1.length_m\n0,1,2\n0.001,x,2\n");

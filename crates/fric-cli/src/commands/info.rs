@@ -2,6 +2,7 @@
 
 mod columns;
 mod overview;
+mod pace;
 mod storage;
 
 use std::collections::BTreeMap;
@@ -26,6 +27,7 @@ use crate::progress::{self, STRIDE};
 use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
 use columns::ColumnResult;
+use pace::{Pace, Times, seconds_between};
 use storage::StorageResult;
 
 /// `fric-info/1`.
@@ -49,14 +51,8 @@ struct TopicResult {
     schema: String,
     encoding: String,
     messages: u64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    rate_hz: Option<f64>,
-    /// Standard deviation of the interval between messages.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    jitter_s: Option<f64>,
-    /// Longest interval between messages.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    longest_interval_s: Option<f64>,
+    #[serde(flatten)]
+    pace: Pace,
     /// First log time, relative to the first message of the log.
     from_s: f64,
     to_s: f64,
@@ -74,34 +70,12 @@ struct SignalResult {
     remarks: Vec<String>,
 }
 
-/// Accumulated log times of a topic.
+/// What was read of a topic.
 #[derive(Debug, Default)]
-struct Times {
+struct Topic {
     schema: String,
     encoding: String,
-    count: u64,
-    first_nanos: u64,
-    last_nanos: u64,
-    interval_sum_s: f64,
-    interval_squares: f64,
-    longest_s: f64,
-}
-
-impl Times {
-    fn add(&mut self, log_time_nanos: u64) {
-        if self.count == 0 {
-            self.first_nanos = log_time_nanos;
-        } else {
-            let interval_s = seconds(log_time_nanos) - seconds(self.last_nanos);
-            let interval_s =
-                if log_time_nanos >= self.last_nanos { seconds(log_time_nanos - self.last_nanos) } else { interval_s };
-            self.interval_sum_s += interval_s;
-            self.interval_squares += interval_s * interval_s;
-            self.longest_s = self.longest_s.max(interval_s);
-        }
-        self.count += 1;
-        self.last_nanos = log_time_nanos;
-    }
+    times: Times,
 }
 
 #[expect(clippy::cast_precision_loss, reason = "for people")]
@@ -144,7 +118,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     let (signals, steps) = match &model {
         Some(model) => {
             let read = read_signals(model, Log::open(&log.logs)?, part, series.as_mut())?;
-            storage.set_rows(read.stamp_nanos);
+            storage.set_rows(&read.times);
             (read.signals, read.steps)
         }
         None => (Vec::new(), Vec::new()),
@@ -168,7 +142,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
 /// Returns the topics, and the time of the first message.
 fn read_topics(log: &mut Log, part: Part) -> Outcome<(Vec<TopicResult>, Option<u64>)> {
     let bar = progress::bytes(log.total_bytes());
-    let mut topics: BTreeMap<String, Times> = BTreeMap::new();
+    let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
     for channel in log.channels() {
         topics.entry(channel.topic.clone()).or_default();
     }
@@ -186,36 +160,24 @@ fn read_topics(log: &mut Log, part: Part) -> Outcome<(Vec<TopicResult>, Option<u
         if part.start_s.is_some_and(|start_s| at_s < start_s) {
             continue;
         }
+        let at_nanos = i64::try_from(message.log_time_nanos).unwrap_or(i64::MAX);
         match topics.get_mut(&message.channel.topic) {
-            Some(times) => times.add(message.log_time_nanos),
-            None => topics.entry(message.channel.topic.clone()).or_default().add(message.log_time_nanos),
+            Some(topic) => topic.times.add(at_nanos),
+            None => topics.entry(message.channel.topic.clone()).or_default().times.add(at_nanos),
         }
     }
     for channel in log.channels() {
-        let times = topics.entry(channel.topic.clone()).or_default();
-        times.encoding.clone_from(&channel.message_encoding);
-        times.schema = channel.schema.as_ref().map_or_else(String::new, |schema| schema.name.clone());
+        let topic = topics.entry(channel.topic.clone()).or_default();
+        topic.encoding.clone_from(&channel.message_encoding);
+        topic.schema = channel.schema.as_ref().map_or_else(String::new, |schema| schema.name.clone());
     }
     progress::finish(&bar);
     let first_nanos = start_nanos;
-    let start_nanos = start_nanos.unwrap_or(0);
-    let topic = |(topic, times): (String, Times)| {
-        #[expect(clippy::cast_precision_loss, reason = "a count of messages")]
-        let intervals = times.count.saturating_sub(1) as f64;
-        let mean_s = times.interval_sum_s / intervals;
-        let variance = times.interval_squares / intervals - mean_s * mean_s;
-        let several = times.count > 1 && mean_s > 0.0;
-        TopicResult {
-            topic,
-            schema: times.schema,
-            encoding: times.encoding,
-            messages: times.count,
-            rate_hz: several.then(|| 1.0 / mean_s),
-            jitter_s: several.then(|| variance.max(0.0).sqrt()),
-            longest_interval_s: several.then_some(times.longest_s),
-            from_s: if times.count > 0 { seconds(times.first_nanos.saturating_sub(start_nanos)) } else { 0.0 },
-            to_s: if times.count > 0 { seconds(times.last_nanos.saturating_sub(start_nanos)) } else { 0.0 },
-        }
+    let start_nanos = i64::try_from(start_nanos.unwrap_or(0)).unwrap_or(i64::MAX);
+    let topic = |(topic, Topic { schema, encoding, times }): (String, Topic)| {
+        let [from_s, to_s] =
+            times.range_nanos().map_or([0.0; 2], |range| range.map(|at_nanos| seconds_between(start_nanos, at_nanos)));
+        TopicResult { topic, schema, encoding, messages: times.count, pace: times.pace(), from_s, to_s }
     };
     Ok((topics.into_iter().map(topic).collect(), first_nanos))
 }
@@ -224,8 +186,8 @@ fn read_topics(log: &mut Log, part: Part) -> Outcome<(Vec<TopicResult>, Option<u
 struct SignalsRead {
     signals: Vec<SignalResult>,
     steps: Vec<StepResult>,
-    /// Stamps of the first and the last sample.
-    stamp_nanos: Option<[i64; 2]>,
+    /// Stamps of the samples.
+    times: Times,
 }
 
 /// Reads the signals and joins them as the other commands do.
@@ -234,7 +196,7 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
     let bar = progress::bytes(log.total_bytes());
     let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names()).within(part);
     let mut holdings = Holdings::new(model.robot.cable_names().len()).of_columns(reader.log().column_names().is_some());
-    let mut stamp_nanos: Option<[i64; 2]> = None;
+    let mut times = Times::default();
     let problem = loop {
         if holdings.rows.is_multiple_of(STRIDE) {
             interrupt::check()?;
@@ -242,7 +204,7 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
         }
         match reader.next_row() {
             Ok(Some(row)) => {
-                stamp_nanos = Some([stamp_nanos.map_or(row.stamp_nanos, |[first, _]| first), row.stamp_nanos]);
+                times.add(row.stamp_nanos);
                 holdings.add(&row);
                 if let Some(series) = &mut series {
                     series.add(&row);
@@ -276,7 +238,7 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
         residual_rms_m: poses.residual_rms_m(),
         remarks: [vec!["computed from the cable lengths".to_owned()], poses.remarks()].concat(),
     }));
-    Ok(SignalsRead { signals, steps: steps(model, &holdings, problem.as_deref()), stamp_nanos })
+    Ok(SignalsRead { signals, steps: steps(model, &holdings, problem.as_deref()), times })
 }
 
 fn signal_results(reader: &SignalReader) -> Vec<SignalResult> {
@@ -367,7 +329,7 @@ fn describe(result: &InfoResult, model: Option<&Model>, attachments: &[String], 
         text += &topic_table(&result.topics, wide);
     }
     let Some(model) = model else {
-        text += "\nWhich signal is which is in the robot file: none is attached to the log, name one\nwith --model.\n";
+        text += "\nWhich signal is which is in the robot file: none is attached to the log, name one\nwith --model, or make one to start from: fric-cli init.\n";
         return text;
     };
     // Writing to a String cannot fail.
@@ -393,9 +355,13 @@ fn topic_table(topics: &[TopicResult], wide: bool) -> String {
         if wide {
             row.push(printable(&topic.encoding));
         }
-        row.extend([topic.messages.to_string(), number(topic.rate_hz, 1), milliseconds(topic.longest_interval_s)]);
+        row.extend([
+            topic.messages.to_string(),
+            number(topic.pace.rate_hz, 1),
+            milliseconds(topic.pace.longest_interval_s),
+        ]);
         if wide {
-            row.extend([milliseconds(topic.jitter_s), format!("{:.3} … {:.3}", topic.from_s, topic.to_s)]);
+            row.extend([milliseconds(topic.pace.jitter_s), format!("{:.3} … {:.3}", topic.from_s, topic.to_s)]);
         }
         row
     };

@@ -4,4 +4,4 @@ mod form;
 mod number;
 
 pub use form::{COMMENT, Form, text_of};
-pub use number::{Decimals, clock_nanos, scaled};
+pub use number::{Decimals, clock_nanos, is_without_value, scaled};

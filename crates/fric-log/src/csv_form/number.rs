@@ -7,6 +7,17 @@ use jiff::tz::TimeZone;
 /// Dates that ISO 8601 does not have. With slashes, the day may come before the month or after it, unless the year comes first.
 const DATES: [&str; 2] = ["%d.%m.%Y %H:%M:%S%.f", "%Y/%m/%d %H:%M:%S%.f"];
 
+/// What programs write where there is no value, beside an empty cell and `nan`: spreadsheets, pandas and R, the C library of Windows, and loggers.
+const NO_VALUE: [&str; 15] = [
+    "-", "--", "---", "na", "n/a", "#n/a", "#nv", "n.a.", "n.v.", "k.a.", "null", "none", "1.#qnan", "-1.#ind",
+    "1.#ind",
+];
+
+/// Whether a cell says that there is no value.
+pub fn is_without_value(cell: &str) -> bool {
+    NO_VALUE.iter().any(|word| cell.eq_ignore_ascii_case(word))
+}
+
 /// The decimal separator of a file, which is either a point or a comma throughout.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Decimals {

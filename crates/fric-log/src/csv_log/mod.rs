@@ -24,7 +24,7 @@ pub use self::units::GREAT_INTERVAL_S;
 
 use self::columns::{Column, Columns, Wanted};
 use self::units::{Quantity, TimeUnit, Units};
-use crate::csv_form::{COMMENT, Decimals, Form, clock_nanos, scaled, text_of};
+use crate::csv_form::{COMMENT, Decimals, Form, clock_nanos, is_without_value, scaled, text_of};
 use crate::signals::{Role, SignalPaths};
 
 /// Number of bytes that contain the header and enough rows to tell where the table begins.
@@ -334,7 +334,8 @@ impl<'a> Cells<'a> {
 
     fn number(&mut self, column: &Column) -> Result<f64, CsvError> {
         let text = std::str::from_utf8(self.text(column)).map_err(|_| self.wrong(column))?;
-        self.decimals.number(text).ok_or_else(|| self.wrong(column))
+        let number = self.decimals.number(text).or_else(|| is_without_value(text).then_some(f64::NAN));
+        number.ok_or_else(|| self.wrong(column))
     }
 
     /// Returns the time; `None` if there is none.

@@ -161,9 +161,10 @@ fn empty_cells_are_gaps_of_their_signal() {
     let mut text =
         "time_s,a.force_n,a.length_m,a.reference_n,pose.x_m,pose.y_m,pose.z_m,pose.qx,pose.qy,pose.qz,pose.qw\n"
             .to_owned();
-    for at in 0..40 {
+    for at in 0..40_usize {
         let pose = if at % 4 == 0 { format!("{at},0,0,0,0,0,1") } else { ",,,,,,".to_owned() };
-        let reference = if at % 2 == 0 { at.to_string() } else { "nan".to_owned() };
+        let without = ["nan", "NA", "#N/A", "null", "n.v.", "-", "---", "-1.#IND"][at / 2 % 8];
+        let reference = if at % 2 == 0 { at.to_string() } else { without.to_owned() };
         let force = if at == 5 { String::new() } else { at.to_string() };
         let length = if at == 5 { String::new() } else { "0.5".to_owned() };
         let length = if at == 7 { "NaN".to_owned() } else { length };

@@ -8,7 +8,11 @@ use fric_log::log::Storage;
 use indicatif::DecimalBytes;
 use serde::Serialize;
 
+use super::pace::{Pace, Times, seconds_between};
 use super::{TopicResult, seconds};
+
+/// Times before 1980 count from the beginning of a recording or of a controller, not from 1970.
+const NO_DATE_NANOS: u64 = 315_532_800_000_000_000;
 
 /// Properties of all files together.
 #[derive(Debug, Serialize)]
@@ -24,8 +28,18 @@ pub struct StorageResult {
     duration_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     chunks: Option<ChunkResult>,
+    /// Number and pace of the rows of a log of rows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rows: Option<RowsResult>,
     #[serde(skip)]
     start_nanos: Option<u64>,
+}
+
+#[derive(Debug, Serialize)]
+struct RowsResult {
+    count: u64,
+    #[serde(flatten)]
+    pace: Pace,
 }
 
 #[derive(Debug, Serialize)]
@@ -55,16 +69,18 @@ impl StorageResult {
             start_s: start_nanos.map(seconds),
             duration_s: from_s.zip(to_s).map(|(from_s, to_s)| to_s - from_s),
             chunks,
+            rows: None,
             start_nanos,
         }
     }
 
-    /// Sets the times of the first and the last sample of a log of rows.
-    pub fn set_rows(&mut self, stamp_nanos: Option<[i64; 2]>) {
-        if let (None, Some([first, last])) = (self.start_nanos, stamp_nanos) {
-            self.start_nanos = u64::try_from(first).ok();
+    /// Sets the rows of a log of rows.
+    pub fn set_rows(&mut self, times: &Times) {
+        if let (None, Some([first_nanos, last_nanos])) = (self.start_nanos, times.range_nanos()) {
+            self.start_nanos = u64::try_from(first_nanos).ok();
             self.start_s = self.start_nanos.map(seconds);
-            self.duration_s = u64::try_from(last.saturating_sub(first)).ok().map(seconds);
+            self.duration_s = Some(seconds_between(first_nanos, last_nanos)).filter(|duration_s| *duration_s >= 0.0);
+            self.rows = Some(RowsResult { count: times.count, pace: times.pace() });
         }
     }
 
@@ -80,12 +96,19 @@ impl StorageResult {
             let sizes = format!("{} of {}", DecimalBytes(*stored_bytes), DecimalBytes(*content_bytes));
             line("compression:", &format!("{compression}, {sizes} in {count} chunks"));
         }
-        if let Some(start_nanos) = self.start_nanos {
+        // A log that counts from its own beginning has no date.
+        if let Some(start_nanos) = self.start_nanos.filter(|nanos| *nanos >= NO_DATE_NANOS) {
             let start = UNIX_EPOCH + Duration::from_nanos(start_nanos);
             line("start:", &humantime::format_rfc3339_millis(start).to_string());
         }
         if let Some(duration_s) = self.duration_s {
             line("duration:", &format!("{duration_s:.3} s"));
+        }
+        if let Some(RowsResult { count, pace: Pace { rate_hz, longest_interval_s, .. } }) = &self.rows {
+            let pace = rate_hz.zip(*longest_interval_s).map_or_else(String::new, |(rate_hz, longest_s)| {
+                format!(", {rate_hz:.1} Hz, longest gap {:.3} ms", 1e3 * longest_s)
+            });
+            line("rows:", &format!("{count}{pace}"));
         }
         if self.messages > 0 {
             line("messages:", &self.messages.to_string());
