@@ -155,9 +155,10 @@ class WrongNumber(TypedDict):
 
 
 class TriedTogether(TypedDict):
-    """Effect that improves all cables together but is not sufficient."""
+    """Effect that improves all cables together, or key of the robot file and the cable whose it is, that is not sufficient."""
 
     kind: str
+    cable: str | None
     reason: str
 
 

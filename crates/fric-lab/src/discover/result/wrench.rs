@@ -65,6 +65,8 @@ pub struct GeometryResult {
 pub struct TriedTogether {
     /// Name of the effect, or key of the robot file.
     pub kind: String,
+    /// The cable, if the entry belongs to one.
+    pub cable: Option<String>,
     /// The reason why it is not named, as a clause.
     pub reason: String,
 }
@@ -78,9 +80,10 @@ impl WrenchGap {
             before: *before,
             after: *after,
         };
+        let name = |cable: Option<usize>| cable.and_then(|cable| names.get(cable).cloned());
         let geometry = |of: &GeometryFinding| GeometryResult {
             kind: of.geometry.key(),
-            cable: of.geometry.cable().and_then(|cable| names.get(cable).cloned()),
+            cable: name(of.geometry.cable()),
             parameters: Numbers(
                 of.geometry
                     .names()
@@ -105,7 +108,11 @@ impl WrenchGap {
             tried: found
                 .tried
                 .iter()
-                .map(|(kind, refusal)| TriedTogether { kind: kind.clone(), reason: refusal.in_words() })
+                .map(|(kind, cable, refusal)| TriedTogether {
+                    kind: kind.clone(),
+                    cable: name(*cable),
+                    reason: refusal.in_words(),
+                })
                 .collect(),
         }
     }

@@ -16,9 +16,8 @@ impl WrenchGap {
     pub fn corrections(&self) -> Vec<String> {
         let correction = |wrong: &GeometryResult| {
             let numbers = wrong.parameters.0.iter().map(|(name, number)| format!("{name} = {number:.5}"));
-            let of = wrong.cable.as_ref().map_or_else(String::new, |cable| format!(" of {cable}"));
             let numbers: Vec<String> = numbers.collect();
-            format!("The robot file's {}{of} is wrong: {}.", wrong.kind, numbers.join(", "))
+            format!("The robot file's {} is wrong: {}.", of_cable(wrong.kind, wrong.cable.as_ref()), numbers.join(", "))
         };
         self.geometry.iter().map(correction).collect()
     }
@@ -27,8 +26,10 @@ impl WrenchGap {
     #[must_use]
     pub fn in_words(&self) -> Vec<String> {
         let alike = self.alike.iter().map(|kind| format!("All cables have {kind} alike, with one value."));
-        let tried =
-            self.tried.iter().map(|tried| format!("Tried for all cables together: {}: {}.", tried.kind, tried.reason));
+        let tried = self.tried.iter().map(|tried| {
+            let what = of_cable(&tried.kind, tried.cable.as_ref());
+            format!("Tried for all cables together: {what}: {}.", tried.reason)
+        });
         // The forces are known up to a common factor, with which the friction goes.
         let names_mass = self.geometry.iter().any(|wrong| wrong.kind == Geometry::Mass.key());
         let scale = (names_mass && self.reference == WrenchReference::Mass.name()).then(|| {
@@ -38,6 +39,11 @@ impl WrenchGap {
         });
         alike.chain(self.corrections()).chain(scale).chain(tried).collect()
     }
+}
+
+/// Returns a name, with the cable that it is of.
+fn of_cable(name: &str, cable: Option<&String>) -> String {
+    cable.map_or_else(|| name.to_owned(), |cable| format!("{name} of {cable}"))
 }
 
 impl WrenchComponent {
@@ -54,19 +60,12 @@ impl WrenchComponent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::discover::result::Evidence;
+    use crate::discover::result::{Evidence, TriedTogether};
     use crate::errors::WrenchError;
     use crate::fit::result::Numbers;
 
-    #[test]
-    fn a_mass_by_the_weight_is_told_with_what_looks_like_it() {
-        let mass = GeometryResult {
-            kind: Geometry::Mass.key(),
-            cable: None,
-            parameters: Numbers(vec![("mass_kg".to_owned(), 1.04)]),
-            evidence: Evidence { delta_bic: None, held_out_rms_n: None },
-        };
-        let gap = |reference: WrenchReference, geometry: Vec<GeometryResult>| WrenchGap {
+    fn gap(reference: WrenchReference, geometry: Vec<GeometryResult>) -> WrenchGap {
+        WrenchGap {
             reference: reference.name(),
             verdict: "extended",
             before: None,
@@ -76,10 +75,33 @@ mod tests {
             alike: Vec::new(),
             geometry,
             tried: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_mass_by_the_weight_is_told_with_what_looks_like_it() {
+        let mass = GeometryResult {
+            kind: Geometry::Mass.key(),
+            cable: None,
+            parameters: Numbers(vec![("mass_kg".to_owned(), 1.04)]),
+            evidence: Evidence { delta_bic: None, held_out_rms_n: None },
         };
         let warns = |gap: WrenchGap| gap.in_words().iter().any(|sentence| sentence.contains("weigh the platform"));
         assert!(warns(gap(WrenchReference::Mass, vec![mass.clone()])));
         assert!(!warns(gap(WrenchReference::Mass, Vec::new())));
         assert!(!warns(gap(WrenchReference::Measured, vec![mass])));
+    }
+
+    #[test]
+    fn what_was_tried_is_told_with_its_cable() {
+        let tried = |kind: &str, cable: Option<&str>| TriedTogether {
+            kind: kind.to_owned(),
+            cable: cable.map(ToOwned::to_owned),
+            reason: "it is weak".to_owned(),
+        };
+        let tried = vec![tried("platform_m", Some("cable3")), tried("sensor_gain", None)];
+        let told = WrenchGap { tried, ..gap(WrenchReference::Measured, Vec::new()) }.in_words();
+        let together = |what: &str| format!("Tried for all cables together: {what}: it is weak.");
+        assert_eq!(told, [together("platform_m of cable3"), together("sensor_gain")]);
     }
 }

@@ -62,8 +62,8 @@ pub struct WrenchDiscovery {
     pub alike: Vec<Effect>,
     /// Wrong entries of the robot file.
     pub geometry: Vec<GeometryFinding>,
-    /// Candidates of all cables or of the robot file that help but do not suffice: names and reasons.
-    pub tried: Vec<(String, Refusal)>,
+    /// Candidates of all cables or of the robot file that help but do not suffice: names, the cable whose entry it is, and reasons.
+    pub tried: Vec<(String, Option<usize>, Refusal)>,
     edits: Edits,
 }
 

@@ -87,7 +87,8 @@ impl Case<'_, '_> {
         };
         let tried = naming.tried.iter().filter_map(|tried| match tried.candidate {
             Candidate::Own(..) => None,
-            all => Some((all.kind().to_owned(), tried.refusal)),
+            Candidate::Geometry(of) => Some((of.key().to_owned(), of.cable(), tried.refusal)),
+            Candidate::Alike(effect) => Some((effect.kind().to_owned(), None, tried.refusal)),
         });
         Ok(WrenchDiscovery {
             reference: description.reference,
