@@ -213,13 +213,21 @@ fn slip_at_a_guide_pulley_is_equation_4() {
 
 #[test]
 fn slip_at_the_sensor_pulley_keeps_its_equilibrium() {
-    for presliding in [Presliding::PerPulley, Presliding::Lumped] {
+    // The Coulomb friction alone is beyond what the cable can pass on, or the viscous friction alone.
+    for (mu, viscous, presliding) in [
+        (0.5, 1.0, Presliding::PerPulley),
+        (0.01, 20.0, Presliding::PerPulley),
+        (0.5, 1.0, Presliding::Lumped),
+        (0.01, 20.0, Presliding::Lumped),
+    ] {
         for (speed, wrap_rad) in
             [(-0.2, PI), (0.2, PI), (0.2, 2.0), (-0.2, 2.0), (0.2, FRAC_PI_2), (-0.2, FRAC_PI_2), (0.2, 1.2)]
         {
             let pulleys = [PulleyOptions::Fixed { wrap_rad, sensor: true }];
-            let (output, _) = slide(&slipping(&pulleys, presliding), 20.0, speed);
-            assert_eq!(output.status, CableStatus::SLIP, "{presliding:?} {wrap_rad} {speed}");
+            let mut options = slipping(&pulleys, presliding);
+            (options.friction.mu, options.friction.viscous_n_s_per_m) = (mu, viscous);
+            let (output, compensator) = slide(&options, 20.0, speed);
+            assert_eq!(output.status, CableStatus::SLIP, "{presliding:?} {wrap_rad} {speed} {viscous}");
             // [P] 11 with F_1/F_0 at the bound of [P] 4.
             let ratio = (speed.signum() * 0.05 * wrap_rad).exp();
             let behind_n = 20.0 / (1.0 - wrap_rad.cos() / ratio);
@@ -227,6 +235,11 @@ fn slip_at_the_sensor_pulley_keeps_its_equilibrium() {
             let before_n = (behind_n - 20.0) / wrap_rad.cos();
             if wrap_rad.cos().abs() > 0.1 {
                 assert_near(behind_n / before_n, ratio, 1e-9);
+            }
+            if presliding == Presliding::PerPulley {
+                // The bearing stores what the viscous friction leaves of the difference.
+                let stored_n = compensator.pulley_friction_n(0)[0];
+                assert_near(stored_n, behind_n * (1.0 - 1.0 / ratio) - viscous * speed, 1e-9);
             }
         }
     }
