@@ -235,10 +235,9 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         let value = |place: usize| place.checked_sub(FRICTION_COUNT).and_then(|place| self.effects.get(place)).map(at);
         let acting =
             Acting::of(|row, place| value(place).is_some_and(|value| value.to_bits() != row.neutral.to_bits()));
-        let remembers = |effect: &&Effect| **effect == Effect::TimeDelay || !effect.memory_places().is_empty();
-        let remembering = Effect::CATALOGUE.iter().filter(remembers).filter(|effect| acting.has(effect.acts()));
-        let effects = remembering.fold(Acting::NONE, |all, effect| all.and(effect.acts())).bits();
-        flags.iter().fold(u64::from(effects) << 8 | pulley_count, |word, flag| word << 1 | u64::from(*flag))
+        let remembering = Effect::CATALOGUE.iter().filter(|effect| remembers(**effect)).map(|effect| effect.acts());
+        let effects = remembering.fold(0, |word, effect| word << 1 | u64::from(acting.has(effect)));
+        flags.iter().fold(effects << 8 | pulley_count, |word, flag| word << 1 | u64::from(*flag))
     }
 
     /// Returns which cables of a block have an attachment.
@@ -253,6 +252,24 @@ impl<const CABLES: usize> ParamColumns<CABLES> {
         T::splat(0.0).lt(T::load(&self.follows_pose, block))
     }
 }
+
+/// Whether the state holds something of an effect.
+#[cfg(feature = "alloc")]
+const fn remembers(effect: Effect) -> bool {
+    let places = effect.memory_places();
+    matches!(effect, Effect::TimeDelay) || places.start < places.end
+}
+
+// The structure word has a bit for each of them, beside eight for the pulleys and four flags.
+#[cfg(feature = "alloc")]
+const _: () = {
+    let (mut count, mut effect) = (0, 0);
+    while effect < Effect::CATALOGUE.len() {
+        count += remembers(Effect::CATALOGUE[effect]) as u32;
+        effect += 1;
+    }
+    assert!(count <= u64::BITS - 12);
+};
 
 /// The state from one cycle to the next: plain numbers, so that a copy is a snapshot. Aligned like [`ParamColumns`].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -225,8 +225,8 @@ impl Effect {
     }
 }
 
-// A set of effects has 32 bits, and the word that tells two robots apart has room for no more.
-const _: () = assert!(Effect::ALL.len() <= 32);
+// A set of effects has so many bits.
+const _: () = assert!(Effect::ALL.len() <= u128::BITS as usize);
 
 /// Writes the name that only this effect of a cable has: its kind, with a number if it is the second.
 impl fmt::Display for Effect {
@@ -360,7 +360,7 @@ const fn neutral() -> [f64; EFFECT_PARAMETER_COUNT] {
 
 /// A set of effects, one bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Acting(u32);
+pub(crate) struct Acting(u128);
 
 impl Acting {
     /// The empty set.
@@ -408,12 +408,6 @@ impl Acting {
     #[inline(always)]
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
-    }
-
-    /// Returns the set as bits, one per effect in the order of [`Effect`].
-    #[cfg(feature = "alloc")]
-    pub const fn bits(self) -> u32 {
-        self.0
     }
 
     /// Whether the sets have a common effect.

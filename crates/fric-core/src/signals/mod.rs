@@ -15,7 +15,7 @@ const GREATEST_FORCE_N: f64 = 1e9;
 /// Distance of the cable from its position at the last sensor change beyond which an unchanged sensor is frozen, m; greater than the noise of any
 /// encoder.
 const FROZEN_TRAVEL_M: f64 = 1e-3;
-/// Maximum number of cycles of a pause, 1000 s at 1 ms; after a longer one, signals say nothing about what happened meanwhile.
+/// Maximum number of cycles of a pause, 1000 s at 1 ms.
 const GREATEST_ELAPSED: f64 = 1e6;
 /// Lengths and speeds beyond this are invalid, m and m/s.
 pub(crate) const GREATEST_MOTION: f64 = 1e6;
@@ -23,7 +23,7 @@ pub(crate) const GREATEST_MOTION: f64 = 1e6;
 /// Limits beyond which a signal counts as faulty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignalLimits {
-    /// Number of cycles with an unchanged sensor after which it is frozen; infinite for never.
+    /// Number of cycles with an unchanged positive force after which the sensor is frozen, if the cable moved meanwhile; infinite for never.
     pub frozen_cycles: f64,
     /// Greatest change of length in one cycle, m.
     pub length_jump_m: f64,
@@ -38,9 +38,9 @@ pub struct SignalState<T> {
     pub sensor_force_n: T,
     /// Number of cycles since its last change.
     pub frozen_count: T,
-    /// Distance of the cable since then, m; it is kept once it suffices for a frozen sensor.
+    /// Distance of the cable since then, m; no longer updated once it reaches that of a frozen sensor.
     pub frozen_travel_m: T,
-    /// Last finite length, m; [`UNKNOWN`] before the first.
+    /// Last valid length, m, within the noise of measured lengths; [`UNKNOWN`] before the first.
     pub length_m: T,
 }
 
@@ -73,15 +73,15 @@ pub struct Conditioned<T: Scalar> {
     pub displacement_m: T,
     /// Speed, m/s; 0 if the motion is invalid.
     pub speed_m_per_s: T,
-    /// Last finite length, m; [`UNKNOWN`] before the first.
+    /// Last valid length, m, within the noise of measured lengths; [`UNKNOWN`] before the first.
     pub length_m: T,
-    /// Whether the sensor force is a number.
+    /// Whether the sensor force is a number within its range.
     pub sensor_finite: T::Mask,
     /// Whether the sensor is frozen.
     pub frozen: T::Mask,
     /// Whether the length jumped.
     pub jump: T::Mask,
-    /// Whether length and speed are numbers.
+    /// Whether length and speed are numbers within their ranges.
     pub motion_finite: T::Mask,
 }
 
@@ -96,7 +96,7 @@ pub struct CableSignals<T: Scalar> {
     pub lead_m: T,
     /// Speed, m/s; 0 if the motion is invalid.
     pub speed_m_per_s: T,
-    /// Last finite length, m; [`UNKNOWN`] before the first.
+    /// Last valid length, m, within the noise of measured lengths; [`UNKNOWN`] before the first.
     pub length_m: T,
     /// See [`Conditioned::hold`].
     pub hold: T::Mask,
@@ -159,7 +159,8 @@ pub fn next_cycle(last: f64, elapsed_cycles: f64) -> f64 {
     if last < 0.0 { 0.0 } else { last + bounded_elapsed(elapsed_cycles) }
 }
 
-/// Returns the number of cycles in which length and force may have changed, for the checks of jumps: only this one after a pause beyond the greatest.
+/// Returns the number of cycles in which length and force may have changed, for the checks of jumps: one after a pause longer than
+/// [`GREATEST_ELAPSED`], so that a great change is flagged.
 #[inline(always)]
 pub(crate) fn checked_cycles(elapsed_cycles: f64) -> f64 {
     Scalar::max(if elapsed_cycles <= GREATEST_ELAPSED { elapsed_cycles } else { 0.0 }, 1.0)
@@ -181,14 +182,14 @@ pub fn condition<T: Scalar>(
     // Before the first length there is no motion and no flag.
     let has_length = state.length_m.lt(T::splat(UNKNOWN));
     let jump = motion_finite.and(length_jump_m.lt(change_m.abs())).and(has_length);
-    let moves = motion_finite.and(change_m.abs().le(length_jump_m));
-    let mut displacement_m = change_m.keep(moves);
+    let displaces = motion_finite.and(change_m.abs().le(length_jump_m));
+    let mut displacement_m = change_m.keep(displaces);
     let mut settled_m = raw.length_m;
     if limits.length_noise_m > 0.0 {
         // The play of measured lengths: only a length that pushes against its edge is motion.
         let beyond_m = (change_m.abs() - T::splat(limits.length_noise_m)).max(zero);
-        displacement_m = (change_m.sign() * beyond_m).keep(moves);
-        settled_m = raw.length_m - (change_m - displacement_m).keep(moves);
+        displacement_m = (change_m.sign() * beyond_m).keep(displaces);
+        settled_m = raw.length_m - (change_m - displacement_m).keep(displaces);
     }
     let speed_m_per_s = raw.speed_m_per_s.keep(motion_finite.and(jump.not()));
     state.length_m = T::select(motion_finite, settled_m, state.length_m);
@@ -199,7 +200,7 @@ pub fn condition<T: Scalar>(
     let repeats = raw.sensor_force_n.eq(state.sensor_force_n);
     state.sensor_force_n = sensor_force_n;
     let frozen = if repeats.any() {
-        // An invalid value says nothing about those around it.
+        // An invalid value resets the count.
         let unchanged = repeats.and(zero.lt(sensor_force_n)).and(sensor_finite);
         state.frozen_count = (state.frozen_count + T::splat(1.0)).keep(unchanged);
         // A sensor that was found frozen stays so if the cable comes back.

@@ -1,17 +1,18 @@
-//! Tells a length of the wrong sign: friction then seems to drive the motion.
+//! Detects a length of the wrong sign: friction then seems to drive the motion.
 //!
 //! Where a cable is paid out, friction leaves more force at the platform than the sensor shows, and less where it is reeled in; in proportion to the load,
-//! or not. Each stroke is an observation: the mean over its way of the force that the sensor lacks, which is regressed on that of the reference with the sign
-//! of the motion, beside a zero and a gain of the sensor. Strokes count by their length.
+//! or not. Each stroke is one observation, weighted by its length: the mean of reference minus sensor is regressed on the mean of the reference with the sign
+//! of the motion, with a zero and a gain of the sensor beside it.
 
 use crate::text::{listed, significant};
 
-/// Way back, as a fraction of the way between the extremes so far, from which on the motion is the other way; below it the length trembles. Half and twice
-/// this fraction tell the same of simulated logs with noise of the length up to a thousandth of their way.
+/// A reversal begins a new stroke only beyond this fraction of the range of lengths so far, so that noise of the length begins none. Half and twice of it
+/// give the same result on simulated logs with noise of up to a thousandth of the range.
 const LEAST_WAY_BACK: f64 = 0.01;
-/// Least evidence for a slope, as a difference of the Bayesian information criterion: very strong on the scale of Kass and Raftery (1995).
+/// Least evidence for a slope: a difference of the Bayesian information criterion, with the degrees of freedom in place of the count, as the strokes are few.
+/// Very strong on the scale of Kass and Raftery (1995).
 const VERY_STRONG_BIC: f64 = 10.0;
-/// Variance of a reference as a fraction of its squared mean below which it is one of rounding.
+/// Variance as a fraction of the squared mean below which a reference is constant but for rounding.
 const ROUNDING: f64 = 1e-12;
 /// Parameters of the regression: zero, gain and the slope.
 const PARAMETERS: f64 = 3.0;
@@ -25,7 +26,7 @@ pub(crate) struct Direction {
     ended: Strokes,
 }
 
-/// The reference, the same with the sign of the motion, and what it has more than the sensor.
+/// The reference, the same with the sign of the motion, and the reference minus the sensor.
 const VARIABLES: usize = 3;
 const REFERENCE: usize = 0;
 const DIRECTED: usize = 1;
@@ -56,7 +57,7 @@ impl Strokes {
     }
 
     /// Returns the number of strokes of equal length that tell as much.
-    fn count(&self) -> f64 {
+    fn effective_count(&self) -> f64 {
         self.way_m * self.way_m / self.squared_lengths_m2
     }
 
@@ -137,9 +138,14 @@ impl Direction {
         strokes.add(self.way?.stroke_m, &self.stroke);
         let [directed, gap, both] = [(DIRECTED, DIRECTED), (GAP, GAP), (DIRECTED, GAP)]
             .map(|(one, other)| strokes.covariance_beside_gain(one, other));
-        let evidence = -(strokes.count() - PARAMETERS) * (1.0 - both * both / (directed * gap)).ln();
-        let ratio = both / directed;
-        (strokes.count() >= PARAMETERS + 1.0 && evidence > VERY_STRONG_BIC && ratio < 0.0).then_some(ratio)
+        let (count, ratio) = (strokes.effective_count(), both / directed);
+        if count < PARAMETERS + 1.0 || ratio >= 0.0 {
+            return None;
+        }
+        let unexplained_share = 1.0 - both * both / (directed * gap);
+        let degrees = count - PARAMETERS;
+        let delta_bic = degrees * unexplained_share.ln() + degrees.ln();
+        (delta_bic < -VERY_STRONG_BIC).then_some(ratio)
     }
 }
 

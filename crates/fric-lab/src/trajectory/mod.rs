@@ -1,7 +1,7 @@
 //! Runs of a platform as pure functions of time, for simulated and real robots.
 //!
 //! [`Trajectory::identification`] is the identification run of \[P\], section III C; [`Trajectory::crossing`] crosses one position along and about
-//! each axis, \[P\] section IV B. Both consist of straight movements and rotations from rest to rest, closed and at rest at both ends, so that they
+//! each axis, \[P\] section IV B; `designed` has runs of pieces that are chosen for a question. All consist of straight movements and rotations from rest to rest, closed and at rest at both ends, so that they
 //! repeat without a jump. They are finite for any finite input and independent of the cables.
 
 mod crossing;
@@ -65,7 +65,7 @@ pub enum Phase {
     StopAndGo,
     /// Steps back and forth with breaks.
     Alternating,
-    /// Strokes of 100 mm back and forth, at increasing speed.
+    /// Strokes back and forth; in the identification run of 100 mm at increasing speed.
     Stroke,
     /// Movements along rectangles through the workspace.
     Rectangle,
@@ -100,7 +100,7 @@ pub struct Leg {
     pub to_m: Vector3<f64>,
     /// Rotation vector at the start, base axes, rad.
     pub from_rad: Vector3<f64>,
-    /// Rotation vector at the end, base axes, rad: a multiple of that at the start, because a rotation has one axis.
+    /// Rotation vector at the end, base axes, rad: parallel to that at the start, because a rotation has one axis. Either may be 0.
     pub to_rad: Vector3<f64>,
     stroke: Stroke,
 }
@@ -192,7 +192,7 @@ impl Trajectory {
         }
     }
 
-    /// Adds a rotation to a rotation vector about the axis of the present one.
+    /// Adds a turn to a rotation vector that is parallel to the present one.
     fn turn(&mut self, phase: Phase, to_rad: Vector3<f64>, speed_rad_per_s: f64, acceleration_rad_per_s2: f64) {
         let (place_m, from_rad) = (self.place_m(), self.rotation_rad());
         let angle_rad = (to_rad - from_rad).norm();

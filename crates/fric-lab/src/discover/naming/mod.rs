@@ -237,7 +237,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut named = Vec::new();
         for _ in 0..PASSES {
             let before = set_of(&found);
-            self.refused = self.set_aside();
+            self.refused = self.excluded();
             named = self.pass(&mut found);
             if set_of(&found) == before || self.is_spent(&found) {
                 break;
@@ -274,8 +274,8 @@ impl<'b, 'a> Search<'b, 'a> {
         of_the_curve.into_iter().filter_map(|effect| Some((effect, Refusal::Open(offset?)))).collect()
     }
 
-    /// Returns these, and those that may not be there.
-    fn set_aside(&self) -> BTreeMap<Effect, Refusal> {
+    /// Returns the candidates that are never tried: those beyond the log, and those that by the reported intervals may not be there.
+    fn excluded(&self) -> BTreeMap<Effect, Refusal> {
         self.beyond_the_log().into_iter().chain(self.absent.iter().map(|effect| (*effect, Refusal::Absent))).collect()
     }
 

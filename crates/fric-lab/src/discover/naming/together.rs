@@ -2,10 +2,10 @@
 //!
 //! Of several effects, each alone can be mistaken for something else. An asymmetry of the friction and a drift of the sensor, of
 //! like size, leave each other an error that changes with the time and with the direction; alone, neither helps on the samples held out. So where no
-//! candidate may enter alone, sets of two and three are tried, including what was refused. To choose among the thousands of them, each candidate is taken
-//! for the force that it adds where it fits best alone, and the sums of squares of all sets follow from the inner products of these forces. The memory
-//! that weakens the evidence is that of what a whole set leaves: as long as anything is missing, the residual remembers that. Those sets in which each
-//! effect has strong evidence beside the others are fitted, the best first, and the first enters whose effects can all stay, with those that the model
+//! candidate may enter alone, sets of two and three are tried, including what was refused. To choose among the thousands of them, each candidate is reduced
+//! to one column, the force that it adds where it fits best alone; the sums of squares of all sets follow from the inner products of these columns. The
+//! evidence is weakened by the memory of what the whole set leaves, because a residual in which anything is missing has memory. Sets in which each effect
+//! has strong evidence beside the others are fitted, the best first. The first one enters whose effects can all stay, together with those that the model
 //! had.
 
 use fric_core::effects::Effect;
@@ -43,9 +43,9 @@ impl Search<'_, '_> {
         if self.excess(&model) <= NEGLIGIBLE || self.effort.is_spent(self.given_count + found.len() + 2) {
             return false;
         }
-        let beyond = self.set_aside();
+        let excluded = self.excluded();
         let mut round = self.round(found);
-        round.retain(|(effect, _)| !beyond.contains_key(effect));
+        round.retain(|(effect, _)| !excluded.contains_key(effect));
         for set in self.strong_sets(&model, &round, MOST_EFFECTS.saturating_sub(found.len())) {
             let mut with = found.clone();
             self.add(&mut with, &set);
@@ -59,8 +59,8 @@ impl Search<'_, '_> {
         false
     }
 
-    /// Returns the sets of at most `room` candidates in which each has strong evidence beside the others, by linear steps from the model: the best first,
-    /// in each the strongest first.
+    /// Returns the sets of at most `room` candidates in which each has strong evidence beside the others, by linear steps from the model. The best set comes
+    /// first; in each set the strongest candidate comes first.
     fn strong_sets(&self, model: &Trial, round: &[(Effect, Trial)], room: usize) -> Vec<Vec<Effect>> {
         let problem = self.bench.problem(&model.free, None);
         let mut residual_n = self.bench.residuals_n(&model.values);
