@@ -1,5 +1,6 @@
 //! Numbers of a manipulator are found again from runs of an independent elastica, and what a run cannot tell is said.
 
+use fric_lab::fit::Progress;
 use fric_tendon::edit::rewrite;
 use fric_tendon::file::ManipulatorFile;
 use fric_tendon_lab::identify::{Identification, Quantity, TendonFitOptions, identify};
@@ -27,7 +28,7 @@ fn identified(text: &str, samples: &[RunSample], names: &[&str]) -> Identificati
     let file = ManipulatorFile::parse(text, "arm").unwrap();
     let quantities = Quantity::all_named(names.iter().copied()).unwrap();
     let options = TendonFitOptions { quantities: Some(quantities) };
-    identify(&file, &[Run::new(samples.to_vec(), 8).unwrap()], &["run".to_owned()], &options).unwrap()
+    identify(&file, &[Run::new(samples.to_vec(), 8).unwrap()], &["run".to_owned()], &options, &Progress::new()).unwrap()
 }
 
 /// Value found less truth, in half 95 % intervals.
@@ -105,7 +106,7 @@ fn what_cannot_be_compared_is_refused() {
         samples.iter_mut().for_each(change);
         let file = ManipulatorFile::parse(text, "arm").unwrap();
         let run = Run::new(samples, 8).unwrap();
-        identify(&file, &[run], &["run".to_owned()], &TendonFitOptions::default()).unwrap_err()
+        identify(&file, &[run], &["run".to_owned()], &TendonFitOptions::default(), &Progress::new()).unwrap_err()
     };
     let alone = refused(&text, &|sample| {
         sample.marker_m.clear();
@@ -120,7 +121,7 @@ fn what_cannot_be_compared_is_refused() {
     assert_eq!(refused(PROTOTYPE, &|sample| sample.marker_m.clear()), ContinuumError::NoGratings);
     let few = Run::new(samples[..10].to_vec(), 8).unwrap();
     let file = ManipulatorFile::parse(&text, "arm").unwrap();
-    let few = identify(&file, &[few], &["run".to_owned()], &TendonFitOptions::default()).unwrap_err();
+    let few = identify(&file, &[few], &["run".to_owned()], &TendonFitOptions::default(), &Progress::new()).unwrap_err();
     assert_eq!(few, ContinuumError::TooShort { count: 10, needed: 20 });
     assert!(Quantity::all_named(["stifness"]).unwrap_err().contains("unknown quantity"));
     assert!(Quantity::all_named(["mu", "hole_mu"]).unwrap_err().contains("name one of them"));
@@ -130,7 +131,7 @@ fn what_cannot_be_compared_is_refused() {
 fn usual(text: &str, samples: &[RunSample]) -> Identification {
     let file = ManipulatorFile::parse(text, "arm").unwrap();
     let run = Run::new(samples.to_vec(), 8).unwrap();
-    identify(&file, &[run], &["run".to_owned()], &TendonFitOptions::default()).unwrap()
+    identify(&file, &[run], &["run".to_owned()], &TendonFitOptions::default(), &Progress::new()).unwrap()
 }
 
 #[test]
@@ -141,7 +142,7 @@ fn one_run_without_markers_hides_none_of_the_other() {
     let file = ManipulatorFile::parse(&text, "arm").unwrap();
     let runs = [samples.clone(), dark].map(|samples| Run::new(samples, 8).unwrap());
     let names = ["light".to_owned(), "dark".to_owned()];
-    let found = identify(&file, &runs, &names, &TendonFitOptions::default()).unwrap();
+    let found = identify(&file, &runs, &names, &TendonFitOptions::default(), &Progress::new()).unwrap();
     assert!(off(&found, "bending_stiffness_n_m2", 2.97e-3).abs() < 2.0);
 }
 

@@ -22,6 +22,12 @@ impl Progress {
         self.stop.store(true, Ordering::Relaxed);
     }
 
+    /// Returns whether the fit has to end.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
     /// Returns the steps done and the total as far as it is known.
     #[must_use]
     pub fn steps(&self) -> (usize, usize) {

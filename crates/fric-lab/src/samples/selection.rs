@@ -95,9 +95,6 @@ pub fn leave_out_interpolated(measured: &[bool], standings: &mut [Standing]) {
 /// to be right to some ten per cent.
 pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &mut [Standing]) {
     let memory_m = record.params.memory_m_per_n(values[MU], values[SIGMA]);
-    if memory_m <= 0.0 {
-        return;
-    }
     for (start, rows) in record.logs() {
         let of_log = standings.iter_mut().skip(start).take(warm_up(rows, memory_m));
         let counts = |standing: &&mut Standing| [Standing::Used, Standing::Interpolated].contains(standing);
@@ -105,9 +102,20 @@ pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &
     }
 }
 
-/// Returns the number of warm-up cycles of a log: all of them if its cable hardly moves further than that or is at rest, because such a log is
-/// unreliable.
+/// Returns the number of cycles from some cycle on until the friction stored there is forgotten, in the log that it is in and by the robot file.
+pub fn warm_up_from(record: &CableRecord<'_>, cycle: usize) -> usize {
+    let given = record.params.values();
+    let memory_m = record.params.memory_m_per_n(given[MU], given[SIGMA]);
+    let log = record.logs().find(|(start, rows)| (*start..start + rows.len()).contains(&cycle));
+    log.map_or(0, |(start, rows)| warm_up(rows.get(cycle - start..).unwrap_or_default(), memory_m))
+}
+
+/// Returns the number of warm-up cycles of a log, 0 without friction that lasts: all of them if its cable hardly moves further than that or is at rest,
+/// because such a log is unreliable.
 fn warm_up(rows: &[Row], memory_m: f64) -> usize {
+    if memory_m <= 0.0 {
+        return 0;
+    }
     let forgotten = -FORGOTTEN.ln();
     let (mut exponent, mut cycles) = (0.0, 0);
     let (mut length_m, mut least_m, mut greatest_m) = (0.0_f64, 0.0_f64, 0.0_f64);

@@ -14,7 +14,7 @@ use crate::arguments::{argument, frozen, refused};
 use crate::errors::{Fault, Outcome};
 use crate::log;
 use crate::results;
-use crate::watch::with_own_threads;
+use crate::watch::Watch;
 
 /// Identifies stiffness, geometry, loads and friction of a manipulator from runs that each have two of: tension at the base, gratings, markers.
 /// `runs` is one or several runs, each starting with a relaxed tendon.
@@ -63,7 +63,7 @@ pub fn continuum_fit(
     let sources: Vec<String> = all.iter().map(|run| run.get().name().to_owned()).collect();
     measured.iter().try_for_each(|run| check_disks(manipulator, run))?;
     let file = &manipulator.file;
-    let found = py.detach(|| with_own_threads(|| identify(file, &measured, &sources, &options)))??;
+    let found = Watch::new(py, None)?.fit(|progress| identify(file, &measured, &sources, &options, progress))??;
     log::warn(py, &measured.iter().filter_map(Run::begin_warning).collect::<Vec<_>>())?;
     log::warn(py, &found.result.warnings())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;

@@ -1,6 +1,6 @@
 //! One search for some quantities, until every number that it finds is determined by the runs.
 
-use fric_lab::fit::{HALF_INTERVAL, OpenDirection, open_directions};
+use fric_lab::fit::{HALF_INTERVAL, OpenDirection, Progress, open_directions};
 use fric_lab::statistics::inverse_of_normal;
 use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
 use nalgebra::DMatrix;
@@ -43,16 +43,17 @@ impl Attempt {
     /// Searches for the numbers of some quantities, in runs from which so many common steps of the gratings were taken off.
     ///
     /// # Errors
-    /// Returns the errors of [`Runs::new`], or [`ContinuumError::NotIdentified`] if the model has no shapes for the runs.
+    /// Returns the errors of [`Runs::new`], or [`ContinuumError::NotIdentified`] if the model has no shapes for the runs or `progress` is stopped.
     pub fn new(
         file: &ManipulatorFile,
         runs: &[Run],
         quantities: &[Quantity],
         step_count: usize,
+        progress: &Progress,
     ) -> Result<Self, ContinuumError> {
-        let mut runs = Runs::new(file, runs)?;
-        let mut unknowns: Vec<Unknown> =
-            quantities.iter().flat_map(|quantity| quantity.unknowns(file.tables())).collect();
+        let mut runs = Runs::new(file, runs, Some(progress))?;
+        let all_unknowns = || quantities.iter().flat_map(|quantity| quantity.unknowns(file.tables()));
+        let mut unknowns: Vec<Unknown> = all_unknowns().collect();
         let mut undetermined: Vec<Undetermined> = Vec::new();
         let before = runs.evaluate(&runs.start(&[]), None).ok_or(ContinuumError::NotIdentified)?;
         let mut start = runs.start(&unknowns);
@@ -60,10 +61,10 @@ impl Attempt {
             let solution = solve(&runs, start).ok_or(ContinuumError::NotIdentified)?;
             let tables = solution.state.tables(&runs.given);
             if Unknown::TipMass.is_below_range(&runs.given, &solution.state.unknowns) {
-                // A negative mass is noise, or stands for something else.
+                // A negative mass is noise, or stands for something else. What could not be told apart from it can be without it.
                 runs.given.tip.mass_kg = 0.0;
-                unknowns.retain(|unknown| *unknown != Unknown::TipMass);
-                undetermined.push(Undetermined::at_bound(Unknown::TipMass));
+                unknowns = all_unknowns().filter(|unknown| *unknown != Unknown::TipMass).collect();
+                undetermined = vec![Undetermined::at_bound(Unknown::TipMass)];
                 start = runs.start(&unknowns);
                 continue;
             }

@@ -4,6 +4,7 @@
 //! tension at the base. The markers are compared with the disks of the shape under the measured tensions, which does not depend on the friction;
 //! without gratings, under the model's own tensions.
 
+use fric_lab::fit::Progress;
 use fric_tendon::ManipulatorParams;
 use fric_tendon::Tendon;
 use fric_tendon::file::{ManipulatorFile, ManipulatorTables, OneOrEach};
@@ -18,11 +19,13 @@ use super::super::shape_errors::{ComputedShape, Way, shapes};
 use super::unknown::Unknown;
 
 /// Runs to compare with, and the file at which the search starts.
-pub struct Runs {
+pub struct Runs<'a> {
     pub given: ManipulatorTables,
     all: Vec<One>,
     has_gratings: bool,
     pub greatest_tension_n: f64,
+    /// Ends the work if it is stopped; `None` where it is short.
+    progress: Option<&'a Progress>,
 }
 
 /// One run.
@@ -82,13 +85,13 @@ struct Computed {
     shapes: Vec<ComputedShape>,
 }
 
-impl Runs {
+impl<'a> Runs<'a> {
     /// Prepares the comparison with the runs.
     ///
     /// # Errors
     /// Returns [`ContinuumError::MissingGroup`] if nothing can be compared, [`ContinuumError::NoGratings`] if the shifts are needed and the file has
     /// no lines, or [`ContinuumError::OverCapacity`].
-    pub fn new(file: &ManipulatorFile, runs: &[Run]) -> Result<Self, ContinuumError> {
+    pub fn new(file: &ManipulatorFile, runs: &[Run], progress: Option<&'a Progress>) -> Result<Self, ContinuumError> {
         let gratings = Gratings::from_file(file)?;
         let lack =
             |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
@@ -121,7 +124,7 @@ impl Runs {
         let samples = all.iter().flat_map(|run| run.whole.samples());
         let greatest_tension_n = samples.map(|sample| sample.tension_base_n).fold(0.0, f64::max);
         let greatest_tension_n = if greatest_tension_n > 0.0 { greatest_tension_n } else { 1.0 };
-        Ok(Self { given: file.tables().clone(), all, has_gratings, greatest_tension_n })
+        Ok(Self { given: file.tables().clone(), all, has_gratings, greatest_tension_n, progress })
     }
 
     /// Returns the times of the compared samples of the first run, s.
@@ -150,8 +153,11 @@ impl Runs {
         State { unknowns: unknowns.iter().map(|unknown| (*unknown, 0.0)).collect(), lines }
     }
 
-    /// Returns the prediction of a state; `None` if its numbers do not form a manipulator. Shapes that `near` already contains are reused.
+    /// Returns the prediction of a state; `None` if its numbers do not form a manipulator, or if the work is stopped. Shapes that `near` already contains are reused.
     pub fn evaluate(&self, state: &State, near: Option<&Evaluation>) -> Option<Evaluation> {
+        if self.progress.is_some_and(Progress::is_stopped) {
+            return None;
+        }
         let file = ManipulatorFile::check(state.tables(&self.given)).ok()?;
         let gratings = if self.has_gratings { Gratings::from_file(&file).ok()? } else { None };
         let mut smooth = file.tables().clone();

@@ -1,7 +1,7 @@
 //! Fits the unknowns by least squares: Gauss–Newton with slopes by finite differences, together with the errors of the calibration lines.
 //!
-//! Each signal is scaled: first by its white noise, then by the root mean square of its residual after the fit, so that a signal that the model
-//! describes less well has less weight. The errors of the lines have the prior 0 ± 1 standard error.
+//! Each signal is scaled: first by its white noise, then by the root mean square of its residual after the fit, until that changes no more, so that a
+//! signal that the model describes less well has less weight. That is the maximum of the likelihood with two unknown noises; it does not depend on the start. The errors of the lines have the prior 0 ± 1 standard error.
 
 use fric_lab::statistics::{Scores, inverse_of_normal, white_noise_throughout};
 use nalgebra::{DMatrix, DVector};
@@ -16,14 +16,22 @@ const MOST_STEPS: usize = 12;
 const MOST_HALVINGS: i32 = 8;
 /// A step that would decrease χ² by less is not taken: no unknown would move by a tenth of its error.
 const SETTLED: f64 = 0.01;
-/// Number of times that the scales are updated.
-const ROUNDS: usize = 2;
+/// Maximum number of times that the scales are updated, and the relative change below which they have settled: no weight changes by more than its double.
+const MOST_ROUNDS: usize = 20;
+const SAME_UNIT: f64 = 0.01;
 
 /// Scale of each signal.
 #[derive(Clone, Copy, Debug)]
 pub struct Units {
     pub tension_n: f64,
     pub marker_m: f64,
+}
+
+impl Units {
+    fn is_near(&self, other: &Self) -> bool {
+        let is_near = |one: f64, other: f64| (one / other - 1.0).abs() < SAME_UNIT;
+        is_near(self.tension_n, other.tension_n) && is_near(self.marker_m, other.marker_m)
+    }
 }
 
 /// The end of a search.
@@ -55,10 +63,7 @@ pub fn solve(runs: &Runs, start: State) -> Option<Solution> {
     let mut state = start;
     let of_lines = line_slopes(runs, &state, &evaluation)?;
     let mut slopes = Vec::new();
-    for round in 0..ROUNDS {
-        if round > 0 {
-            units = left(&evaluation, units);
-        }
+    for _ in 0..MOST_ROUNDS {
         let mut cost = squares(&evaluation, &state, units);
         for _ in 0..MOST_STEPS {
             slopes = unknown_slopes(runs, &state, &evaluation)?;
@@ -72,7 +77,8 @@ pub fn solve(runs: &Runs, start: State) -> Option<Solution> {
                 let moved = moved(&state, &step, share);
                 let trial = runs.evaluate(&moved, Some(&evaluation))?;
                 let trial_cost = squares(&trial, &moved, units);
-                (trial_cost < cost).then_some((moved, trial, trial_cost))
+                // A sample without a shape has no residual, which is no gain.
+                (trial_cost < cost && has_shapes_of(&trial, &evaluation)).then_some((moved, trial, trial_cost))
             };
             let Some((next, trial, next_cost)) = (0..MOST_HALVINGS).find_map(|halving| trial(0.5_f64.powi(halving)))
             else {
@@ -83,6 +89,11 @@ pub fn solve(runs: &Runs, start: State) -> Option<Solution> {
             if is_settled {
                 break;
             }
+        }
+        let last = units;
+        units = left(&evaluation, last);
+        if units.is_near(&last) {
+            break;
         }
     }
     Some(Solution { state, evaluation, units, slopes })
@@ -197,6 +208,15 @@ fn each_row(evaluation: &Evaluation, mut each: impl FnMut(&Row, usize, usize)) {
             each(row, run, sample);
         }
     }
+}
+
+/// Whether one prediction has a residual wherever another has.
+fn has_shapes_of(one: &Evaluation, other: &Evaluation) -> bool {
+    let values = |of: &Evaluation| -> Vec<bool> {
+        let rows = of.runs.iter().flat_map(|run| &run.rows);
+        rows.flat_map(|row| row.tension_n.iter().chain(&row.marker_m)).map(|value| value.is_finite()).collect()
+    };
+    values(one).iter().zip(values(other)).all(|(one, other)| *one || !other)
 }
 
 /// Returns χ² of a state.

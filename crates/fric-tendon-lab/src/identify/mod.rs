@@ -13,6 +13,7 @@ mod result;
 mod summary;
 pub(super) mod unknown;
 
+use fric_lab::fit::Progress;
 use fric_tendon::edit::{GratingLine, ManipulatorEdit};
 use fric_tendon::file::ManipulatorFile;
 
@@ -48,17 +49,18 @@ pub struct Identification {
     pub edit: ManipulatorEdit,
 }
 
-/// Identifies the numbers of a manipulator from its runs. `names` holds the names of the runs.
+/// Identifies the numbers of a manipulator from its runs. `names` holds the names of the runs. Another thread can stop the work by `progress`.
 ///
 /// # Errors
 /// Returns [`ContinuumError::MissingGroup`] if a run has nothing to compare, [`ContinuumError::NoGratings`] if its shifts are needed and the file
 /// does not say how they become tensions, [`ContinuumError::TooShort`], [`ContinuumError::OverCapacity`], or [`ContinuumError::NotIdentified`] if the
-/// model has no shapes for the runs.
+/// model has no shapes for the runs or the work was stopped.
 pub fn identify(
     file: &ManipulatorFile,
     runs: &[Run],
     names: &[String],
     options: &TendonFitOptions,
+    progress: &Progress,
 ) -> Result<Identification, ContinuumError> {
     let (runs, base_noise): (Vec<Run>, Vec<Option<BaseNoise>>) = runs.iter().map(steadied).unzip();
     let (mut runs, mut common_steps) = (runs, Vec::new());
@@ -66,7 +68,7 @@ pub fn identify(
         let steadied = runs.into_iter().map(|run| guard::steadied(run, &gratings));
         (runs, common_steps) = steadied.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     }
-    let counts = Runs::new(file, &runs)?.sample_counts();
+    let counts = Runs::new(file, &runs, None)?.sample_counts();
     let count = counts.iter().sum();
     if count < LEAST_SAMPLES {
         return Err(ContinuumError::TooShort { count, needed: LEAST_SAMPLES });
@@ -81,7 +83,7 @@ pub fn identify(
     }
     kept.extend(quantities.iter().filter(|one| one.is_impossible(given)).map(|one| Undetermined::impossible(*one)));
     let step_count = common_steps.iter().map(Vec::len).sum();
-    let attempt = |quantities: &[Quantity]| Attempt::new(file, &runs, quantities, step_count);
+    let attempt = |quantities: &[Quantity]| Attempt::new(file, &runs, quantities, step_count, progress);
     let mut found = attempt(&quantities)?;
     if let Some(worse) = found.worse {
         // Numbers that move a disk away from its marker stand for something else. Friction may still be found.

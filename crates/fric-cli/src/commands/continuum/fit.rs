@@ -1,5 +1,6 @@
 //! `continuum fit`: identifies a manipulator's numbers from its runs.
 
+use fric_lab::fit::Progress;
 use fric_log::output::OutputFile;
 use fric_tendon::edit::rewrite;
 use fric_tendon_lab::identify::{Quantity, TendonFitOptions, identify};
@@ -9,7 +10,7 @@ use fric_work::provenance::shown_path;
 use super::{Model, about, read_table};
 use crate::arguments::continuum::TendonFitArguments;
 use crate::failure::{Failure, Outcome};
-use crate::measurements::check_named_once;
+use crate::measurements::{check_named_once, watched};
 use crate::output::{self, JsonTarget, Written};
 use crate::warnings::warn_all;
 
@@ -35,7 +36,8 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
         measured.push(Run::from_columns(&table, model.disk_count()).map_err(|error| about(path, error))?);
     }
     let shown: Vec<String> = runs.iter().map(|path| shown_path(path)).collect();
-    let found = identify(&model.file, &measured, &shown, &options).map_err(|error| match runs.as_slice() {
+    let fit = |progress: &Progress| identify(&model.file, &measured, &shown, &options, progress);
+    let found = watched("fitting", "runs", fit)?.map_err(|error| match runs.as_slice() {
         [only] => about(only, error),
         _ => Failure::from(error),
     })?;

@@ -28,7 +28,7 @@ pub fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool
         return None;
     }
     let mut standings = crate::fit::cables::prepared(record);
-    leave_out(&faulty_stretches(record), record.interval_s, &mut standings);
+    leave_out(record, &faulty_stretches(record), &mut standings);
     let gang = crate::search::gang::Gang::new(1, stop);
     let paper = crate::fit::cables::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
     let (start, _) = given_model(record, &paper.solution);

@@ -49,7 +49,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     }
     let stretches = faulty_stretches(record);
     let mut standings = crate::fit::cables::prepared(record);
-    leave_out(&stretches, record.interval_s, &mut standings);
+    leave_out(record, &stretches, &mut standings);
     let gang = crate::search::gang::Gang::new(1, stop);
     // Its forces, which would stay with its problem, are of no further use.
     let crate::fit::cables::Search { solution, standings: found, .. } =

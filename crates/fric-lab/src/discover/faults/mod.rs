@@ -15,7 +15,7 @@ pub mod vibration;
 use std::ops::Range;
 
 use crate::fit::CableRecord;
-use crate::samples::selection::Standing;
+use crate::samples::selection::{Standing, warm_up_from};
 use crate::samples::steps::CoarseSteps;
 use crate::samples::still::{runs, stands_still};
 
@@ -32,7 +32,7 @@ const AGREEMENT: f64 = 4.0;
 const OUTLIER_RATIO: f64 = 6.0;
 /// A spike that no fit has seen also exceeds this fraction of the force. Friction of 8 % that reverses for one cycle makes 16 %.
 const FRICTION_RATIO: f64 = 0.25;
-/// Time that is left out after a faulty stretch, s. The friction of the model has to settle again.
+/// Least time that is left out after a faulty stretch, s.
 const AFTER_S: f64 = 0.1;
 /// Two stretches closer than this are merged, s.
 const MERGED_S: f64 = 0.1;
@@ -221,11 +221,14 @@ pub fn of_stretches(stretches: &[FaultyStretch], time_s: impl Fn(usize) -> f64) 
     [Fault::Frozen, Fault::Clipped, Fault::Spikes].into_iter().filter_map(of_kind).collect()
 }
 
-/// Excludes such stretches, and the time after each, from the samples that count.
-pub fn leave_out(stretches: &[FaultyStretch], interval_s: f64, standings: &mut [Standing]) {
+/// Excludes such stretches, and the time after each, from the samples that count. In a force that stood still or was cut off the friction of the model had
+/// another load, and keeps that error until the cable has moved.
+pub fn leave_out(record: &CableRecord<'_>, stretches: &[FaultyStretch], standings: &mut [Standing]) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
-    let after = (AFTER_S / interval_s) as usize;
+    let least = (AFTER_S / record.interval_s) as usize;
     for stretch in stretches {
+        let lasts = stretch.fault != Fault::Spikes;
+        let after = if lasts { least.max(warm_up_from(record, stretch.cycles.end)) } else { least };
         let end = (stretch.cycles.end + after).min(standings.len());
         if let Some(standings) = standings.get_mut(stretch.cycles.start..end) {
             standings.fill(Standing::Flagged);

@@ -54,7 +54,7 @@ impl<'a> Sensors<'a> {
         let of_cables: Vec<Vec<FaultyStretch>> = records.iter().map(faulty_stretches).collect();
         let mut standings = vec![Standing::Used; measurements.len()];
         for (record, stretches) in records.iter().zip(&of_cables) {
-            leave_out(stretches, record.interval_s, &mut standings);
+            leave_out(record, stretches, &mut standings);
         }
         let is_faulty: Vec<bool> = standings.iter().map(|standing| *standing != Standing::Used).collect();
         let found = records.iter().enumerate().flat_map(|(cable, record)| hum_of(cable, record, &is_faulty));

@@ -36,7 +36,7 @@ const WIDE: f64 = 20.0;
 
 /// The run with all numbers that take part.
 pub struct Joint {
-    pub runs: Runs,
+    pub runs: Runs<'static>,
     /// Numbers of all candidates and of the friction. The lines follow, two numbers per grating.
     unknowns: Vec<Unknown>,
     line_count: usize,
@@ -89,7 +89,7 @@ impl Jacobian {
 impl Joint {
     /// Prepares the cost. Returns `None` if nothing can be compared.
     pub fn new(file: &ManipulatorFile, run: &Run, candidates: &[Candidate]) -> Option<Self> {
-        let mut runs = Runs::new(file, std::slice::from_ref(run)).ok()?;
+        let mut runs = Runs::new(file, std::slice::from_ref(run), None).ok()?;
         let tendon = &mut runs.given.tendon;
         if tendon.mu.as_slice().iter().all(|mu| *mu == 0.0) {
             tendon.mu = OneOrEach::One(START_MU);
