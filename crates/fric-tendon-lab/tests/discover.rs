@@ -24,6 +24,11 @@ fn measured(experiment: Experiment, seed: u64, mu: &[f64]) -> (String, Vec<RunSa
 
 /// The text of the calibrated prototype, and a run of another manipulator.
 pub(super) fn measured_of(truth: &str, options: &TendonSimulationOptions) -> (String, Vec<RunSample>) {
+    calibrated(PROTOTYPE, truth, options)
+}
+
+/// The same for another given file.
+pub(super) fn calibrated(given: &str, truth: &str, options: &TendonSimulationOptions) -> (String, Vec<RunSample>) {
     let run = simulate(ManipulatorFile::parse(truth, "truth").unwrap().params(), options).unwrap();
     let lines = Calibration::fit_all(&run.calibration).unwrap();
     let line = |line: &Calibration| {
@@ -38,7 +43,7 @@ pub(super) fn measured_of(truth: &str, options: &TendonSimulationOptions) -> (St
         }
     };
     let edit = ManipulatorEdit { lines: lines.iter().map(line).collect(), ..ManipulatorEdit::default() };
-    (rewrite(PROTOTYPE, "arm", &edit).unwrap(), run.samples)
+    (rewrite(given, "arm", &edit).unwrap(), run.samples)
 }
 
 fn found(text: &str, samples: &[RunSample]) -> TendonDiscovery {

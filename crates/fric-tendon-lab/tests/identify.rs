@@ -8,7 +8,7 @@ use fric_tendon_lab::shape_errors::{ShapeErrors, Way, shapes};
 use fric_tendon_lab::simulate::{Experiment, TendonSimulationOptions};
 use fric_tendon_lab::{ContinuumError, Run, RunSample, as_measured, corrected};
 
-use super::discover::{PROTOTYPE, measured_of};
+use super::discover::{PROTOTYPE, calibrated};
 
 /// The prototype upright in gravity, with light disks.
 fn standing() -> String {
@@ -18,10 +18,9 @@ fn standing() -> String {
 /// The text of the calibrated file that is given, and a run of the truth.
 fn run_of(given: &str, truth: &str, experiment: Experiment, seed: u64) -> (String, Vec<RunSample>) {
     let options = TendonSimulationOptions { experiment, seed, ..TendonSimulationOptions::default() };
-    let (calibrated, samples) = measured_of(truth, &options);
-    let gratings = calibrated.split_once("[gratings]").unwrap().1;
+    let (text, samples) = calibrated(given, truth, &options);
     let truth = ManipulatorFile::parse(truth, "truth").unwrap();
-    (format!("{given}\n[gratings]{gratings}"), as_measured(&samples, &truth))
+    (text, as_measured(&samples, &truth))
 }
 
 fn identified(text: &str, samples: &[RunSample], names: &[&str]) -> Identification {
@@ -130,8 +129,40 @@ fn what_cannot_be_compared_is_refused() {
 /// What is found by default.
 fn usual(text: &str, samples: &[RunSample]) -> Identification {
     let file = ManipulatorFile::parse(text, "arm").unwrap();
-    let run = Run::new(samples.to_vec(), 8).unwrap();
+    let run = Run::new(samples.to_vec(), file.params().disk_count()).unwrap();
     identify(&file, &[run], &["run".to_owned()], &TendonFitOptions::default(), &Progress::new()).unwrap()
+}
+
+/// A soft arm of plastic, on its side.
+const SIDEWAYS: &str = "format = 'fric-continuum/1'\nname = 'sideways'\ndisk_count = 9\npitch_m = 0.04\ndisk_thickness_m = 0.002\n\
+                        hole_radius_m = 0.012\ndisk_mass_kg = 0.00015\ngravity_m_per_s2 = [0.0, -9.81]\n\
+                        [backbone]\nwidth_m = 0.006\nthickness_m = 0.00115\nyoungs_modulus_pa = 3e9\nmass_kg_per_m = 0.008\n\
+                        [tendon]\nmu = 0.15\nsigma_n_per_m = 15000.0\naxial_stiffness_n = 9000.0\ncapacity_n = 4.0\n";
+
+/// The tendon's offset is held as long as a mass on the tip may do the same; once that would be below zero, the offset is found.
+#[test]
+fn what_was_held_for_a_mass_below_zero_is_found() {
+    for seed in [1, 6] {
+        let given = SIDEWAYS.replace("= 0.012", "= 0.01143");
+        let (text, samples) = run_of(&given, SIDEWAYS, Experiment::Mixed, seed);
+        let found = usual(&text, &samples);
+        for (key, truth) in
+            [("hole_radius_m", 0.012), ("bending_stiffness_n_m2", 2.2813e-3), ("precurvature_per_m", 0.0)]
+        {
+            assert!(off(&found, key, truth).abs() < 2.0, "{seed}: {key} {}", off(&found, key, truth));
+        }
+    }
+}
+
+/// A search that is stopped ends, and finds nothing.
+#[test]
+fn a_stopped_search_finds_nothing() {
+    let (text, samples) = run_of(PROTOTYPE, PROTOTYPE, Experiment::OneWay, 40);
+    let progress = Progress::new();
+    progress.stop();
+    let (file, run) = (ManipulatorFile::parse(&text, "arm").unwrap(), Run::new(samples, 8).unwrap());
+    let stopped = identify(&file, &[run], &["run".to_owned()], &TendonFitOptions::default(), &progress);
+    assert!(matches!(stopped, Err(ContinuumError::NotIdentified)));
 }
 
 #[test]
