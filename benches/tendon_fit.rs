@@ -10,10 +10,11 @@
 
 use std::collections::BTreeMap;
 
+use fric_lab::fit::Progress;
 use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
 use fric_tendon::file::ManipulatorFile;
 use fric_tendon_lab::fbg::Calibration;
-use fric_tendon_lab::identify::{TendonFitOptions, identify};
+use fric_tendon_lab::identify::{Identification, TendonFitOptions, identify};
 use fric_tendon_lab::shape_errors::{ShapeErrors, Way, shapes};
 use fric_tendon_lab::simulate::{Experiment, TendonSimulationOptions, simulate};
 use fric_tendon_lab::{Run, RunSample, as_measured, corrected};
@@ -90,6 +91,11 @@ fn prototype(hangs: bool) -> String {
     }
 }
 
+fn identified(file: &ManipulatorFile, run: &Run) -> Identification {
+    let options = TendonFitOptions::default();
+    identify(file, std::slice::from_ref(run), &["run".to_owned()], &options, &Progress::new()).unwrap()
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let number = |place: usize, usual: u64| arguments.get(place).and_then(|one| one.parse().ok()).unwrap_or(usual);
@@ -127,9 +133,7 @@ fn main() {
             }
             let measured = Run::new(samples, 8).unwrap();
             let began = std::time::Instant::now();
-            let found =
-                identify(&file, std::slice::from_ref(&measured), &["run".to_owned()], &TendonFitOptions::default())
-                    .unwrap();
+            let found = identified(&file, &measured);
             if std::env::var("VERBOSE").is_ok() {
                 println!("{}\n{:.1} s", found.result.summary(), began.elapsed().as_secs_f64());
             }

@@ -155,7 +155,7 @@ class WrongNumber(TypedDict):
 
 
 class TriedTogether(TypedDict):
-    """Effect that improves all cables together, or key of the robot file and the cable whose it is, that is not sufficient."""
+    """Candidate that improves all cables together but is not sufficient: an effect, or a key of the robot file with its cable."""
 
     kind: str
     cable: str | None

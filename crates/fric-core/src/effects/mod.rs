@@ -225,7 +225,7 @@ impl Effect {
     }
 }
 
-// A set of effects has so many bits.
+// A set of effects has 128 bits.
 const _: () = assert!(Effect::ALL.len() <= u128::BITS as usize);
 
 /// Writes the name that only this effect of a cable has: its kind, with a number if it is the second.

@@ -320,6 +320,9 @@ fn force_errors(
         errors.after_n.add(force_n - reference_n);
         let Some(signals) = record.rows.get(cycle).map(|row| row.signals) else { continue };
         // A fitted zero at the platform would hide the scale of a load that does not vary.
+        if signals.jump || record.starts.contains(&cycle) {
+            errors.set_up.start();
+        }
         let shown_n = signals.sensor_force_n * gain;
         errors.set_up.add(signals.length_m, *reference_n, [shown_n, force_n - offset_n]);
     }

@@ -39,7 +39,7 @@ impl Progress {
     }
 
     /// Adds steps to the total.
-    pub(crate) fn begin(&self, total: usize) {
+    pub fn begin(&self, total: usize) {
         self.total.fetch_add(total, Ordering::Relaxed);
     }
 
@@ -47,7 +47,8 @@ impl Progress {
         self.done.fetch_add(count, Ordering::Relaxed);
     }
 
-    pub(crate) fn finish_one(&self) {
+    /// Counts a step as done.
+    pub fn finish_one(&self) {
         self.finish(1);
     }
 }

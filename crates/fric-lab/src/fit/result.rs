@@ -237,7 +237,15 @@ impl FitResult {
             return Err(FitError::new(format!("no sample can be used: {cause}"), advice));
         }
         let of_logs = |cable: &FitCableResult| cable.per_log.iter().any(|log| !log.standard_errors.0.is_empty());
-        let is_fitted = |cable: &FitCableResult| !cable.standard_errors.0.is_empty() || of_logs(cable);
+        // A value at the bound where it does nothing is a finding: a cable without friction.
+        let is_none = |cable: &FitCableResult, key: &String| {
+            let value = cable.parameters.get(key);
+            Parameter::named(key).is_some_and(|of| value == Some(of.row().neutral))
+        };
+        let is_fitted = |cable: &FitCableResult| {
+            let determined = !cable.standard_errors.0.is_empty() || of_logs(cable);
+            determined || cable.at_bound.iter().any(|key| is_none(cable, key))
+        };
         if self.cables.iter().any(is_fitted) {
             return Ok(());
         }

@@ -207,6 +207,9 @@ impl Replay {
                 errors.poseless_end_count = 0;
             }
             let forces_n = [output.frictionless_n, output.force_at_platform_n];
+            if output.status.contains(CableStatus::LENGTH_JUMP) {
+                errors.set_up.start();
+            }
             errors.set_up.add(input.length_m, *reference_n, forces_n);
             errors.before_n.add(output.frictionless_n - reference_n);
             errors.after_n.add(output.force_at_platform_n - reference_n);

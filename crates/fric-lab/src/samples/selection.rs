@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use fric_core::CableParams;
 use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::cable::CableRecord;
@@ -102,12 +103,24 @@ pub fn leave_out_warm_up(record: &CableRecord<'_>, values: &Values, standings: &
     }
 }
 
-/// Returns the number of cycles from some cycle on until the friction stored there is forgotten, in the log that it is in and by the robot file.
-pub fn warm_up_from(record: &CableRecord<'_>, cycle: usize) -> usize {
-    let given = record.params.values();
-    let memory_m = record.params.memory_m_per_n(given[MU], given[SIGMA]);
-    let log = record.logs().find(|(start, rows)| (*start..start + rows.len()).contains(&cycle));
-    log.map_or(0, |(start, rows)| warm_up(rows.get(cycle - start..).unwrap_or_default(), memory_m))
+/// Returns the number of cycles until the friction stored at the beginning of these rows is forgotten, by the robot file; 0 without friction.
+pub fn cycles_to_forget(params: &CableParams, rows: &[Row]) -> usize {
+    let given = params.values();
+    let memory_m = params.memory_m_per_n(given[MU], given[SIGMA]);
+    if memory_m > 0.0 {
+        forgetting(rows, memory_m).take_while(|exponent| *exponent < -FORGOTTEN.ln()).count()
+    } else {
+        0
+    }
+}
+
+/// Returns Σσ|Δl|/f_c from the first of these rows to each.
+fn forgetting(rows: &[Row], memory_m: f64) -> impl Iterator<Item = f64> {
+    rows.iter().scan(0.0, move |exponent, row| {
+        let (tension_n, displacement_m) = (row.signals.sensor_force_n, row.signals.displacement_m);
+        *exponent += if tension_n > 0.0 { displacement_m.abs() / (memory_m * tension_n) } else { 0.0 };
+        Some(*exponent)
+    })
 }
 
 /// Returns the number of warm-up cycles of a log, 0 without friction that lasts: all of them if its cable hardly moves further than that or is at rest,
@@ -117,13 +130,11 @@ fn warm_up(rows: &[Row], memory_m: f64) -> usize {
         return 0;
     }
     let forgotten = -FORGOTTEN.ln();
-    let (mut exponent, mut cycles) = (0.0, 0);
+    let mut cycles = 0;
     let (mut length_m, mut least_m, mut greatest_m) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for row in rows {
-        let (tension_n, displacement_m) = (row.signals.sensor_force_n, row.signals.displacement_m);
-        exponent += if tension_n > 0.0 { displacement_m.abs() / (memory_m * tension_n) } else { 0.0 };
+    for (row, exponent) in rows.iter().zip(forgetting(rows, memory_m)) {
         cycles += usize::from(exponent < forgotten);
-        length_m += displacement_m;
+        length_m += row.signals.displacement_m;
         (least_m, greatest_m) = (least_m.min(length_m), greatest_m.max(length_m));
         if exponent >= LEAST_WAY_RATIO * forgotten && greatest_m - least_m >= LEAST_RANGE_M {
             return cycles;

@@ -20,7 +20,12 @@ impl SetUp {
         Self { scale: Scale::new(frictionless_gain), direction: Direction::default() }
     }
 
-    /// Adds a sample: its length, its reference, and the force at the platform by the sensor without any correction and with the model's.
+    /// Begins a log, or what follows a jump of the length.
+    pub fn start(&mut self) {
+        self.direction.start();
+    }
+
+    /// Adds a sample: its length, its reference, and the force at the platform by the sensor without friction and with the model's.
     pub fn add(&mut self, length_m: f64, reference_n: f64, forces_n: [f64; 2]) {
         self.scale.add(reference_n, forces_n);
         self.direction.add(length_m, reference_n, forces_n[0]);
@@ -31,6 +36,8 @@ impl SetUp {
 #[must_use]
 pub(crate) fn warnings<'a>(cables: impl Iterator<Item = (&'a str, SetUp)> + Clone) -> Vec<String> {
     let mut warnings = scale::warnings(cables.clone().map(|(name, cable)| (name, cable.scale)));
-    warnings.extend(direction::warning(cables.map(|(name, cable)| (name, cable.direction))));
+    // On a wrong scale, of the other sign for example, the rest is no friction.
+    let sound = cables.filter(|(_, cable)| cable.scale.ratio().is_none());
+    warnings.extend(direction::warning(sound.map(|(name, cable)| (name, cable.direction))));
     warnings
 }

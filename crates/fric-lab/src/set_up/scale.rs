@@ -101,7 +101,7 @@ impl Scale {
 
     /// Returns the ratio of the mean force to the mean reference, if, where the reference varies, that of the changes is alike, and if the model's correction
     /// does not make up for it.
-    fn ratio(&self) -> Option<f64> {
+    pub fn ratio(&self) -> Option<f64> {
         let [shown, corrected] = &self.forces;
         let of_means = Some(shown.sum / self.reference.sum).filter(|ratio| is_beyond_friction(*ratio))?;
         if !self.varies() {

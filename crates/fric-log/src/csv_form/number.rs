@@ -13,7 +13,7 @@ const NO_VALUE: [&str; 15] = [
     "1.#ind",
 ];
 
-/// Whether a cell says that there is no value.
+/// Whether a cell says in words that there is no value. The form of a file is found without them: a header or a line of units may have a `-` too.
 pub fn is_without_value(cell: &str) -> bool {
     NO_VALUE.iter().any(|word| cell.eq_ignore_ascii_case(word))
 }

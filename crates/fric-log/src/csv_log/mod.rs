@@ -1,7 +1,8 @@
 //! CSV logs: a header, and one row of numbers per time.
 //!
 //! The following is detected automatically: comma, semicolon or tab as separator, decimal points or commas, a byte order mark, quotes, lines starting
-//! with `#`, a header in one of these, lines about the recording above the header, and a line of units under it. Empty cells and `nan` are gaps of their signal. Columns are named like the keys of
+//! with `#`, a header in one of these, lines about the recording above the header, and a line of units under it. Empty cells and those that say that
+//! there is no value (`nan`, `NA`, `---`) are gaps of their signal. Columns are named like the keys of
 //! [`ColumnTable`](fric_core::robot::file::ColumnTable), or as the robot file states. A row with too many or too few cells, or without a time, is
 //! left out and counted; text in place of a number is an error. The last line counts only if it has a line end, because its last number may be
 //! incomplete.

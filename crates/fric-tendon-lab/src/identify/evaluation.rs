@@ -153,7 +153,8 @@ impl<'a> Runs<'a> {
         State { unknowns: unknowns.iter().map(|unknown| (*unknown, 0.0)).collect(), lines }
     }
 
-    /// Returns the prediction of a state; `None` if its numbers do not form a manipulator, or if the work is stopped. Shapes that `near` already contains are reused.
+    /// Returns the prediction of a state; `None` if its numbers do not form a manipulator, or if the work is stopped. Shapes that `near` already contains
+    /// are reused.
     pub fn evaluate(&self, state: &State, near: Option<&Evaluation>) -> Option<Evaluation> {
         if self.progress.is_some_and(Progress::is_stopped) {
             return None;

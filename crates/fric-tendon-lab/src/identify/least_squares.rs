@@ -1,7 +1,7 @@
 //! Fits the unknowns by least squares: Gauss–Newton with slopes by finite differences, together with the errors of the calibration lines.
 //!
 //! Each signal is scaled: first by its white noise, then by the root mean square of its residual after the fit, until that changes no more, so that a
-//! signal that the model describes less well has less weight. That is the maximum of the likelihood with two unknown noises; it does not depend on the start. The errors of the lines have the prior 0 ± 1 standard error.
+//! signal that the model describes less well has less weight. The end is a stationary point of the likelihood with two unknown noises. The errors of the lines have the prior 0 ± 1 standard error.
 
 use fric_lab::statistics::{Scores, inverse_of_normal, white_noise_throughout};
 use nalgebra::{DMatrix, DVector};
@@ -16,8 +16,9 @@ const MOST_STEPS: usize = 12;
 const MOST_HALVINGS: i32 = 8;
 /// A step that would decrease χ² by less is not taken: no unknown would move by a tenth of its error.
 const SETTLED: f64 = 0.01;
-/// Maximum number of times that the scales are updated, and the relative change below which they have settled: no weight changes by more than its double.
+/// Maximum number of times that the scales are updated.
 const MOST_ROUNDS: usize = 20;
+/// Relative change of a scale below which it has settled; weights change by about twice that.
 const SAME_UNIT: f64 = 0.01;
 
 /// Scale of each signal.
@@ -212,11 +213,13 @@ fn each_row(evaluation: &Evaluation, mut each: impl FnMut(&Row, usize, usize)) {
 
 /// Whether one prediction has a residual wherever another has.
 fn has_shapes_of(one: &Evaluation, other: &Evaluation) -> bool {
-    let values = |of: &Evaluation| -> Vec<bool> {
-        let rows = of.runs.iter().flat_map(|run| &run.rows);
-        rows.flat_map(|row| row.tension_n.iter().chain(&row.marker_m)).map(|value| value.is_finite()).collect()
-    };
-    values(one).iter().zip(values(other)).all(|(one, other)| *one || !other)
+    values_of(one).zip(values_of(other)).all(|(one, other)| one.is_finite() || !other.is_finite())
+}
+
+/// Returns all residuals.
+fn values_of(evaluation: &Evaluation) -> impl Iterator<Item = f64> {
+    let rows = evaluation.runs.iter().flat_map(|run| &run.rows);
+    rows.flat_map(|row| row.tension_n.iter().chain(&row.marker_m)).copied()
 }
 
 /// Returns χ² of a state.

@@ -62,6 +62,7 @@ pub fn identify(
     options: &TendonFitOptions,
     progress: &Progress,
 ) -> Result<Identification, ContinuumError> {
+    progress.begin(1);
     let (runs, base_noise): (Vec<Run>, Vec<Option<BaseNoise>>) = runs.iter().map(steadied).unzip();
     let (mut runs, mut common_steps) = (runs, Vec::new());
     if let Some(gratings) = Gratings::from_file(file)? {
@@ -103,6 +104,7 @@ pub fn identify(
         edit.lines = lines(file, &found.solution)?;
     }
     let result = TendonFitResult::new(given, names, &counts, found, &wanted, (base_noise, common_steps));
+    progress.finish_one();
     Ok(Identification { result, edit })
 }
 

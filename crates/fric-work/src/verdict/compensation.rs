@@ -5,7 +5,7 @@ use fric_lab::errors::{ForceError, WrenchError};
 use fric_lab::fit::Parameter;
 use fric_lab::fit::result::{FitCableResult, FitResult};
 use fric_lab::hysteresis::HysteresisResult;
-use fric_lab::text::listed;
+use fric_lab::text::{listed, significant};
 
 use super::{Tone, Verdict, counted};
 use crate::replay::{CableResult, ReplayResult};
@@ -235,13 +235,13 @@ pub fn of_fit(result: &FitResult) -> Verdict {
 
 /// Returns a sentence about the cables whose error was a zero more than anything else; `None` without one.
 fn of_zeros(result: &FitResult) -> Option<String> {
+    let key = Parameter::all().find(|of| of.place() == OFFSET)?.to_string();
     let zeros = result.cables.iter().filter_map(|cable| {
-        let key = Parameter::all().find(|of| of.place() == OFFSET)?.to_string();
         let offset_n = cable.parameters.get(&key)?;
         let is_fitted = cable.standard_errors.get(&key).is_some();
         // Half of the squares before.
         let is_most = 2.0 * offset_n * offset_n > cable.before?.rms_n.powi(2);
-        (is_fitted && is_most).then(|| format!("{key} of {} is {offset_n:.1} N", cable.name))
+        (is_fitted && is_most).then(|| format!("{key} of {} is {} N", cable.name, significant(offset_n)))
     });
     let zeros: Vec<String> = zeros.collect();
     (!zeros.is_empty()).then(|| {
@@ -266,7 +266,9 @@ fn fitted(result: &FitResult) -> (String, &'static str) {
     let mut names: Vec<String> = result.cables.iter().flat_map(fitted_of).map(|of| of.to_string()).collect();
     names.sort_unstable();
     names.dedup();
-    (format!("Only {} is fitted", listed(&names)), "the model")
+    let fitted =
+        if names.is_empty() { "Nothing is fitted".to_owned() } else { format!("Only {} is fitted", listed(&names)) };
+    (fitted, "the model")
 }
 
 /// Returns the verdict on a hysteresis: the remaining fraction of its width.

@@ -37,7 +37,7 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
     }
     let shown: Vec<String> = runs.iter().map(|path| shown_path(path)).collect();
     let fit = |progress: &Progress| identify(&model.file, &measured, &shown, &options, progress);
-    let found = watched("fitting", "runs", fit)?.map_err(|error| match runs.as_slice() {
+    let found = watched("fitting", "searches", fit)?.map_err(|error| match runs.as_slice() {
         [only] => about(only, error),
         _ => Failure::from(error),
     })?;

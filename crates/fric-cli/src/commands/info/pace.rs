@@ -18,10 +18,10 @@ pub struct Pace {
 #[derive(Debug, Default)]
 pub struct Times {
     pub count: u64,
-    pub first_nanos: i64,
-    pub last_nanos: i64,
+    first_nanos: i64,
+    last_nanos: i64,
     interval_sum_s: f64,
-    interval_squares: f64,
+    interval_squares_s2: f64,
     longest_s: f64,
 }
 
@@ -32,7 +32,7 @@ impl Times {
         } else {
             let interval_s = seconds_between(self.last_nanos, at_nanos);
             self.interval_sum_s += interval_s;
-            self.interval_squares += interval_s * interval_s;
+            self.interval_squares_s2 += interval_s * interval_s;
             self.longest_s = self.longest_s.max(interval_s);
         }
         self.count += 1;
@@ -51,7 +51,7 @@ impl Times {
         if self.count < 2 || mean_s <= 0.0 {
             return Pace::default();
         }
-        let variance = self.interval_squares / intervals - mean_s * mean_s;
+        let variance = self.interval_squares_s2 / intervals - mean_s * mean_s;
         Pace {
             rate_hz: Some(1.0 / mean_s),
             jitter_s: Some(variance.max(0.0).sqrt()),

@@ -12,7 +12,7 @@ use super::pace::{Pace, Times, seconds_between};
 use super::{TopicResult, seconds};
 
 /// Times before 1980 count from the beginning of a recording or of a controller, not from 1970.
-const NO_DATE_NANOS: u64 = 315_532_800_000_000_000;
+const EARLIEST_DATE_NANOS: u64 = 315_532_800_000_000_000;
 
 /// Properties of all files together.
 #[derive(Debug, Serialize)]
@@ -97,7 +97,7 @@ impl StorageResult {
             line("compression:", &format!("{compression}, {sizes} in {count} chunks"));
         }
         // A log that counts from its own beginning has no date.
-        if let Some(start_nanos) = self.start_nanos.filter(|nanos| *nanos >= NO_DATE_NANOS) {
+        if let Some(start_nanos) = self.start_nanos.filter(|nanos| *nanos >= EARLIEST_DATE_NANOS) {
             let start = UNIX_EPOCH + Duration::from_nanos(start_nanos);
             line("start:", &humantime::format_rfc3339_millis(start).to_string());
         }

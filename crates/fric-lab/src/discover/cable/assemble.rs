@@ -154,11 +154,16 @@ impl CableLog<'_> {
         }
     }
 
-    /// Returns the forces by the sensor and by a model with this residual beside the reference. A zero at the platform, `offset_n`, would hide the scale of a load that does not vary.
+    /// Returns the forces by the sensor and by a model with this residual beside the reference. A zero at the platform, `offset_n`, would hide the scale
+    /// of a load that does not vary.
     fn set_up(&self, residual_n: &[f64], offset_n: f64) -> SetUp {
         let gain = self.raw.params.frictionless_gain();
         let mut set_up = SetUp::new(gain);
-        for ((row, reference_n), residual_n) in self.raw.rows.iter().zip(self.raw.references_n).zip(residual_n) {
+        let samples = self.raw.rows.iter().zip(self.raw.references_n).zip(residual_n).enumerate();
+        for (cycle, ((row, reference_n), residual_n)) in samples {
+            if row.signals.jump || self.raw.starts.contains(&cycle) {
+                set_up.start();
+            }
             let forces_n = [row.signals.sensor_force_n * gain, residual_n + reference_n - offset_n];
             set_up.add(row.signals.length_m, *reference_n, forces_n);
         }

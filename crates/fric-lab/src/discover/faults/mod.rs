@@ -15,7 +15,7 @@ pub mod vibration;
 use std::ops::Range;
 
 use crate::fit::CableRecord;
-use crate::samples::selection::{Standing, warm_up_from};
+use crate::samples::selection::{Standing, cycles_to_forget};
 use crate::samples::steps::CoarseSteps;
 use crate::samples::still::{runs, stands_still};
 
@@ -221,15 +221,20 @@ pub fn of_stretches(stretches: &[FaultyStretch], time_s: impl Fn(usize) -> f64) 
     [Fault::Frozen, Fault::Clipped, Fault::Spikes].into_iter().filter_map(of_kind).collect()
 }
 
-/// Excludes such stretches, and the time after each, from the samples that count. In a force that stood still or was cut off the friction of the model had
-/// another load, and keeps that error until the cable has moved.
+/// Excludes such stretches, and what follows each in its log, from the samples that count. While the force stood still or was cut off, the model computed
+/// friction for the wrong load, which lasts until the cable has moved.
 pub fn leave_out(record: &CableRecord<'_>, stretches: &[FaultyStretch], standings: &mut [Standing]) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let least = (AFTER_S / record.interval_s) as usize;
     for stretch in stretches {
+        let mut logs = record.logs();
+        let Some((start, rows)) = logs.find(|(start, rows)| stretch.cycles.start < start + rows.len()) else {
+            continue;
+        };
+        let rest = rows.get(stretch.cycles.end.saturating_sub(start)..).unwrap_or_default();
         let lasts = stretch.fault != Fault::Spikes;
-        let after = if lasts { least.max(warm_up_from(record, stretch.cycles.end)) } else { least };
-        let end = (stretch.cycles.end + after).min(standings.len());
+        let after = if lasts { least.max(cycles_to_forget(record.params, rest)) } else { least };
+        let end = stretch.cycles.end + after.min(rest.len());
         if let Some(standings) = standings.get_mut(stretch.cycles.start..end) {
             standings.fill(Standing::Flagged);
         }

@@ -27,8 +27,8 @@ impl WrenchGap {
     pub fn in_words(&self) -> Vec<String> {
         let alike = self.alike.iter().map(|kind| format!("All cables have {kind} alike, with one value."));
         let tried = self.tried.iter().map(|tried| {
-            let what = of_cable(&tried.kind, tried.cable.as_ref());
-            format!("Tried for all cables together: {what}: {}.", tried.reason)
+            let together = if tried.cable.is_none() { " for all cables together" } else { "" };
+            format!("Tried{together}: {}: {}.", of_cable(&tried.kind, tried.cable.as_ref()), tried.reason)
         });
         // The forces are known up to a common factor, with which the friction goes.
         let names_mass = self.geometry.iter().any(|wrong| wrong.kind == Geometry::Mass.key());
@@ -101,7 +101,8 @@ mod tests {
         };
         let tried = vec![tried("platform_m", Some("cable3")), tried("sensor_gain", None)];
         let told = WrenchGap { tried, ..gap(WrenchReference::Measured, Vec::new()) }.in_words();
-        let together = |what: &str| format!("Tried for all cables together: {what}: it is weak.");
-        assert_eq!(told, [together("platform_m of cable3"), together("sensor_gain")]);
+        let expected =
+            ["Tried: platform_m of cable3: it is weak.", "Tried for all cables together: sensor_gain: it is weak."];
+        assert_eq!(told, expected);
     }
 }
