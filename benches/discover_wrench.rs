@@ -146,7 +146,7 @@ fn run(case: WrenchCase) -> Outcome {
 
 /// What was tried and did not suffice.
 fn details(found: &WrenchDiscovery) -> String {
-    let mut words: Vec<String> = found.tried.iter().map(|(name, refusal)| format!("{name} {refusal:?}")).collect();
+    let mut words: Vec<String> = found.tried.iter().map(|(name, _, refusal)| format!("{name} {refusal:?}")).collect();
     for (cable, of) in found.cables.iter().enumerate() {
         words.extend(
             of.tried.iter().map(|tried| {
