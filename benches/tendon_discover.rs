@@ -14,6 +14,7 @@
 use std::collections::BTreeMap;
 
 use fric_lab::discover::result::{DiscoverCableResult, EffectResult};
+use fric_lab::fit::Progress;
 use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
 use fric_tendon::file::ManipulatorFile;
 use fric_tendon_lab::discover::{Manipulator, TendonDiscovery, discover};
@@ -90,7 +91,7 @@ fn simulated(case: &Case, seed: u64) -> (SimulatedRun, String) {
 }
 
 fn found(text: &str, run: &SimulatedRun) -> TendonDiscovery {
-    discover(&parsed(text), &Run::new(run.samples.clone(), 8).unwrap(), "run").unwrap()
+    discover(&parsed(text), &Run::new(run.samples.clone(), 8).unwrap(), "run", &Progress::new()).unwrap()
 }
 
 fn told(tendon: &DiscoverCableResult<Manipulator>) -> String {

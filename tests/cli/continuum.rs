@@ -183,7 +183,7 @@ fn four_ways_are_compared_with_the_markers() {
     let html = String::from_utf8(place.read("s.html")).unwrap();
     assert_self_contained(&html);
     assert!(html.matches("<svg").count() == 9 && html.contains("class=\"marker\""));
-    assert!(run.stdout.contains("[C] fig. 12, one way") && run.stdout.contains("[C] fig. 15, mixed"), "{run:#?}");
+    assert!(run.stdout.contains("[C] fig. 12 one way") && run.stdout.contains("[C] fig. 15 mixed"), "{run:#?}");
     // Errors measured on the paper's prototype say nothing of another manipulator.
     for (from, to) in
         [("pitch_m = 0.037", "pitch_m = 0.036"), ("youngs_modulus_pa = 200e9", "youngs_modulus_pa = 250e9")]

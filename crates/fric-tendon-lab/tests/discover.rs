@@ -3,6 +3,7 @@
 mod intervals;
 mod markers;
 
+use fric_lab::fit::Progress;
 use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
 use fric_tendon::file::ManipulatorFile;
 use fric_tendon_lab::discover::{TendonDiscovery, discover};
@@ -48,7 +49,7 @@ pub(super) fn calibrated(given: &str, truth: &str, options: &TendonSimulationOpt
 
 fn found(text: &str, samples: &[RunSample]) -> TendonDiscovery {
     let run = Run::new(samples.to_vec(), 8).unwrap();
-    discover(&ManipulatorFile::parse(text, "arm").unwrap(), &run, "run").unwrap()
+    discover(&ManipulatorFile::parse(text, "arm").unwrap(), &run, "run", &Progress::new()).unwrap()
 }
 
 /// The verdict and the names of what was found.
@@ -104,8 +105,19 @@ fn samples_that_gratings_lack_do_not_hide_their_noise() {
         }
     }
     let file = ManipulatorFile::parse(&text, "arm").unwrap();
-    let refused = discover(&file, &Run::new(samples, 8).unwrap(), "run").unwrap_err();
+    let refused = discover(&file, &Run::new(samples, 8).unwrap(), "run", &Progress::new()).unwrap_err();
     assert_eq!(refused, ContinuumError::UntoldNoise);
+}
+
+/// A search that is stopped ends, and tells nothing.
+#[test]
+fn a_stopped_search_tells_nothing() {
+    let (text, samples) = measured(Experiment::OneWay, 5, &[0.1753]);
+    let progress = Progress::new();
+    progress.stop();
+    let file = ManipulatorFile::parse(&text, "arm").unwrap();
+    let stopped = discover(&file, &Run::new(samples, 8).unwrap(), "run", &progress).unwrap_err();
+    assert_eq!(stopped, ContinuumError::NotIdentified);
 }
 
 #[test]
@@ -311,7 +323,7 @@ fn runs_that_tell_nothing_are_refused() {
     let (text, samples) = measured(Experiment::OneWay, 8, &[0.1753]);
     let file = ManipulatorFile::parse(&text, "arm").unwrap();
     let refused = |samples: Vec<RunSample>, file: &ManipulatorFile| {
-        discover(file, &Run::new(samples, 8).unwrap(), "run").unwrap_err()
+        discover(file, &Run::new(samples, 8).unwrap(), "run", &Progress::new()).unwrap_err()
     };
     assert!(matches!(refused(samples[..20].to_vec(), &file), ContinuumError::TooShort { count: 20, .. }));
     let blind = samples.iter().map(|sample| RunSample { shift_nm: Vec::new(), ..sample.clone() }).collect();

@@ -1,13 +1,11 @@
 //! The hysteresis for machines, and as table II of \[P\].
 
-use std::fmt::Write as _;
-
 use fric_core::robot::file::RobotFile;
 use serde::Serialize;
 
 use super::{AxisHysteresis, CrossedPose, Width};
 use crate::axis::CartesianAxis;
-use crate::text::{table, to_millimetre};
+use crate::text::{table, to_millimetre, wrapped};
 
 /// `fric-hysteresis/1`.
 #[derive(Clone, Debug, Serialize)]
@@ -120,23 +118,22 @@ fn describe(result: &HysteresisResult) -> String {
         let names: Vec<&str> = result.axes.iter().filter(|axis| wanted(axis)).map(|axis| axis.axis).collect();
         Some(names.join(", ")).filter(|names| !names.is_empty())
     };
-    // Writing to a String cannot fail.
     if let Some(names) = named(|axis| axis.applied_subtracted == Some(true)) {
-        let _ = writeln!(
-            text,
-            "The log's outside wrench is taken off, so that what is really applied does not\ncount: {names}."
-        );
+        let sentence =
+            format!("The log's outside wrench is taken off, so that what is really applied does not count: {names}.");
+        text += &wrapped("", &sentence);
     }
     if let Some(names) = named(|axis| axis.applied_subtracted == Some(false)) {
-        let _ =
-            writeln!(text, "The log's outside wrench is not known, so that forces from outside count too:\n{names}.");
+        let sentence =
+            format!("The log's outside wrench is not known, so that forces from outside count too: {names}.");
+        text += &wrapped("", &sentence);
     }
     if let Some(names) = named(|axis| axis.passes == 0) {
-        let _ = writeln!(
-            text,
-            "Not crossed: {names}. Record the platform going to and fro across this position\nalong (x, y, z) or about \
-             (a, b, c) these axes, several times, with nothing else\nmoving."
+        let sentence = format!(
+            "Not crossed: {names}. Record the platform going to and fro across this position along (x, y, z) or about (a, b, c) \
+             these axes, several times, with nothing else moving."
         );
+        text += &wrapped("", &sentence);
     }
     text
 }

@@ -6,7 +6,7 @@ use fric_core::effects::Effect;
 use fric_core::robot::RobotParams;
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Sample};
-use fric_lab::discover::{DiscoverOptions, Fault, Finding, RunnerUp, discover};
+use fric_lab::discover::{DiscoverOptions, Fault, Finding, Refusal, RunnerUp, Verdict, discover};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use fric_lab::simulate::sweep::{Case, Group};
 use fric_lab::simulate::{Simulation, SimulationOptions};
@@ -54,15 +54,21 @@ fn a_delay_is_told_from_a_lag() {
 
 const NOISE_N: f64 = 0.03;
 
-/// Coulomb friction without presliding, in samples 20 to 60 ms apart. The reference is late by `delay_s`, and the sensor follows with the time constant
-/// `lag_s`.
-fn irregular<'a>(robot: &'a RobotParams<'a>, delay_s: f64, lag_s: f64, seed: u64) -> Measurements<'a> {
+/// Coulomb friction without presliding, in samples so many milliseconds apart. The reference is late by `delay_s`, and the sensor follows with the time
+/// constant `lag_s`. The noise enters behind that.
+fn sampled<'a>(
+    robot: &'a RobotParams<'a>,
+    [least_ms, most_ms]: [u32; 2],
+    delay_s: f64,
+    lag_s: f64,
+    seed: u64,
+) -> Measurements<'a> {
     const FINE_S: f64 = 1e-3;
     let load_n = |time_s: f64| 50.0 + 12.0 * (TAU * time_s / 5.7).sin() + 4.0 * (TAU * time_s / 1.9).sin();
     let mut measurements = Measurements::new(robot, Reference::Forces);
     measurements.start_log();
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let intervals = Uniform::new(20, 60).unwrap();
+    let intervals = Uniform::new_inclusive(least_ms, most_ms).unwrap();
     let (mut shown_n, mut next, mut stamp_nanos) = (load_n(0.0), 0, 0);
     for fine in 0..120_000 {
         let time_s = FINE_S * f64::from(fine);
@@ -94,15 +100,23 @@ fn irregular<'a>(robot: &'a RobotParams<'a>, delay_s: f64, lag_s: f64, seed: u64
     measurements
 }
 
+const IRREGULAR_MS: [u32; 2] = [20, 60];
+
+fn axis(cycle_s: f64) -> RobotFile {
+    let text = format!(
+        "format = \"fric-robot/1\"\nname = \"axis\"\ncycle_s = {cycle_s}\n[[cable]]\nname = \"a\"\npulleys = [{{ wrap_deg = 180.0 }}]\n\
+         friction = {{ mu = 0.02, sigma_n_per_m = 1e8, viscous_n_s_per_m = 0.0 }}\n"
+    );
+    RobotFile::parse(&text, "axis").unwrap()
+}
+
 /// The reference is put back by time, not by samples; an early one is told from a sensor that follows late.
 #[test]
 fn time_errors_among_irregular_samples() {
-    let text = "format = \"fric-robot/1\"\nname = \"axis\"\ncycle_s = 0.04\n[[cable]]\nname = \"a\"\n\
-                pulleys = [{ wrap_deg = 180.0 }]\nfriction = { mu = 0.02, sigma_n_per_m = 1e8, viscous_n_s_per_m = 0.0 }\n";
-    let robot = RobotFile::parse(text, "axis").unwrap();
+    let robot = axis(0.04);
     let robot = robot.params();
     for (delay_s, seed) in [(0.12, 5), (-0.12, 6), (-0.12, 7)] {
-        let measurements = irregular(&robot, delay_s, 0.0, seed);
+        let measurements = sampled(&robot, IRREGULAR_MS, delay_s, 0.0, seed);
         let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
         let [fault] = found.faults.as_slice() else { panic!("{delay_s}: {:?}, {:?}", found.faults, found.findings) };
         let (_, found_s) = fault.parameters[0];
@@ -113,9 +127,35 @@ fn time_errors_among_irregular_samples() {
         assert!(left_n < 1.1 * NOISE_N * 2.0_f64.sqrt(), "{delay_s}: {left_n} N");
     }
     for (lag_s, seed) in [(0.12, 8), (0.2, 9)] {
-        let measurements = irregular(&robot, 0.0, lag_s, seed);
+        let measurements = sampled(&robot, IRREGULAR_MS, 0.0, lag_s, seed);
         let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
         let names: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
         assert!(names == [Effect::SensorLag] && found.faults.is_empty(), "{lag_s}: {names:?}, {:?}", found.faults);
+    }
+}
+
+/// A lag of many samples makes the noise behind it louder than what it explains. It is told with its time constant all the same, and not without a lag.
+#[test]
+fn a_lag_that_noise_hides_is_told() {
+    let robot = axis(0.004);
+    let robot = robot.params();
+    for (lag_s, seed) in [(0.05, 1), (0.1, 2), (0.0, 3)] {
+        let measurements = sampled(&robot, [4, 4], 0.0, lag_s, seed);
+        let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0);
+        assert!(found.findings.is_empty(), "{lag_s}: {:?}", found.findings);
+        let told: Vec<f64> = found
+            .tried
+            .iter()
+            .filter_map(|tried| match tried.refusal {
+                Refusal::Louder { time_constant_s } => Some(time_constant_s),
+                _ => None,
+            })
+            .collect();
+        if lag_s > 0.0 {
+            assert!(found.verdict == Verdict::Unexplained && told.len() == 1, "{lag_s}: {:?}", found.tried);
+            assert!((told[0] / lag_s - 1.0).abs() < 0.15, "{lag_s}: {told:?}");
+        } else {
+            assert!(found.verdict == Verdict::Complete && told.is_empty(), "{:?}", found.tried);
+        }
     }
 }

@@ -12,7 +12,7 @@ use crate::arrays::{fixed, fixed_rows};
 use crate::errors::Outcome;
 use crate::log;
 use crate::results;
-use crate::watch::with_own_threads;
+use crate::watch::Watch;
 
 /// Finds what the file of a manipulator lacks, from a run with the tension at the base and gratings: friction at the holes, their memory, a drifting
 /// grating, a hole with its own μ. With markers, it also finds wrong values of bending, loads and measurement.
@@ -25,7 +25,7 @@ pub fn continuum_discover(
     check_disks(manipulator, &run.run)?;
     let (file, files, run) = (&manipulator.file, run.files(), &run.run);
     let source = files.first().map_or_else(|| ARRAYS.to_owned(), |path| shown_path(path));
-    let found = py.detach(|| with_own_threads(|| discover(file, run, &source)))??;
+    let found = Watch::new(py, None)?.fit(|progress| discover(file, run, &source, progress))??;
     let noise = found.base_noise.map(|noise| noise.warning());
     log::warn(py, &run.begin_warning().into_iter().chain(noise).collect::<Vec<_>>())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;

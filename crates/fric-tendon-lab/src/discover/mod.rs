@@ -40,6 +40,7 @@ pub(super) mod worse;
 
 use fric_lab::discover::Verdict;
 use fric_lab::discover::result::DiscoverResult;
+use fric_lab::fit::Progress;
 use fric_tendon::edit::ManipulatorEdit;
 use fric_tendon::file::ManipulatorFile;
 
@@ -75,13 +76,19 @@ pub struct TendonDiscovery {
     pub residual_after_n: Vec<Vec<f64>>,
 }
 
-/// Searches for what a manipulator file lacks. `log` is the name of the run.
+/// Searches for what a manipulator file lacks. `log` is the name of the run. Another thread can stop the work by `progress`.
 ///
 /// # Errors
 /// Returns [`ContinuumError::MissingGroup`] without the tension at the base or gratings, [`ContinuumError::NoGratings`] if the file does not say how
 /// shifts become tensions, [`ContinuumError::TooShort`] for a run with too few samples to hold any out, [`ContinuumError::UntoldNoise`] for gratings
-/// with more gaps than samples, or [`ContinuumError::OverCapacity`].
-pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDiscovery, ContinuumError> {
+/// with more gaps than samples, [`ContinuumError::OverCapacity`], or [`ContinuumError::NotIdentified`] if the work was stopped.
+pub fn discover(
+    file: &ManipulatorFile,
+    run: &Run,
+    log: &str,
+    progress: &Progress,
+) -> Result<TendonDiscovery, ContinuumError> {
+    progress.begin(1);
     let lack = |what, remedy| ContinuumError::MissingGroup { what, consequence: "there is nothing to compare", remedy };
     if !run.has_tension() {
         return Err(lack("tension at the base", "`tension_base_n`"));
@@ -97,7 +104,11 @@ pub fn discover(file: &ManipulatorFile, run: &Run, log: &str) -> Result<TendonDi
     let kept = thinned(run.samples());
     let as_given = corrected(run, file)?;
     let case = Case::new(file, &as_given, &gratings, &kept, base_error_n)?;
-    let Machine { named, tables, mu: mu_of_holes } = machine::search(file, run).unwrap_or_else(|| Machine::none(file));
+    let Machine { named, tables, mu: mu_of_holes } =
+        machine::search(file, run, progress).unwrap_or_else(|| Machine::none(file));
+    if progress.is_stopped() {
+        return Err(ContinuumError::NotIdentified);
+    }
     let extended = if named.is_empty() { None } else { ManipulatorFile::check(tables).ok() };
     // The search for friction starts with these findings in the file.
     let with_found = match &extended {

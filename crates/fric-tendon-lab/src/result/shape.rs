@@ -17,8 +17,8 @@ use crate::shape_errors::{ShapeErrors, Way};
 
 /// Errors that \[C\] measured on its prototype, mm: title, and max and mean for none, Coulomb and measured.
 const PUBLISHED: [(&str, [[f64; 2]; 3]); 2] = [
-    ("[C] fig. 12, one way", [[9.37, 5.03], [3.06, 2.21], [2.84, 2.03]]),
-    ("[C] fig. 15, mixed", [[15.1, 10.56], [19.11, 16.47], [2.87, 1.75]]),
+    ("[C] fig. 12 one way", [[9.37, 5.03], [3.06, 2.21], [2.84, 2.03]]),
+    ("[C] fig. 15 mixed", [[15.1, 10.56], [19.11, 16.47], [2.87, 1.75]]),
 ];
 
 /// Explanation of the friction models whose names are not self-explanatory.

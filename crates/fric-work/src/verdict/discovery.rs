@@ -1,6 +1,6 @@
 //! The verdict on a discovery: what the model lacks, on which cables, and what to do about it.
 
-use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WrenchGap};
+use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, EffectResult, RunnerUpResult, WrenchGap};
 use fric_lab::text::listed;
 
 use super::{Tone, Verdict};
@@ -15,13 +15,16 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     let on = |cables: &[&str]| {
         if cables.len() == count && count > 1 { format!("all {count} cables") } else { listed(cables) }
     };
-    let mut kinds: Vec<(&str, Vec<&str>, String)> = Vec::new();
+    let mut kinds: Vec<(String, Vec<&str>, String)> = Vec::new();
     for cable in &result.cables {
         for effect in &cable.effects {
-            match kinds.iter_mut().find(|(kind, ..)| *kind == effect.kind) {
+            let as_good = effect.runner_up.as_ref().filter(|other| other.as_good);
+            let kind =
+                as_good.map_or_else(|| effect.kind.to_owned(), |other| format!("{} or {}", effect.kind, other.kind));
+            match kinds.iter_mut().find(|(known, ..)| *known == kind) {
                 Some((_, names, _)) if names.last() == Some(&cable.name.as_str()) => {}
                 Some((_, names, _)) => names.push(&cable.name),
-                None => kinds.push((effect.kind, vec![&cable.name], effect.remedy())),
+                None => kinds.push((kind, vec![&cable.name], remedy(effect, as_good))),
             }
         }
     }
@@ -39,10 +42,12 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     if !worse.is_empty() {
         parts.push(format!("The extended model is worse on {}.", names(&worse)));
     }
+    let has_faults = result.cables.iter().any(|cable| !cable.faults.is_empty());
     let is_whole_complete =
         complete.len() == count && result.wrench.as_ref().is_none_or(|gap| gap.verdict == "complete");
     if is_whole_complete {
-        parts.push(format!("The model is complete on {}: what is left is noise.", names(&complete)));
+        let rest = if has_faults { "noise and faults of the recording" } else { "noise" };
+        parts.push(format!("The model is complete on {}: what is left is {rest}.", names(&complete)));
     } else {
         if !kinds.is_empty() {
             let all: Vec<String> = kinds.iter().map(|(kind, cables, _)| format!("{kind} ({})", on(cables))).collect();
@@ -82,16 +87,34 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
         todo.push("Until then compensate with the extended file: fric-cli discover -o writes it.".to_owned());
     }
     if todo.is_empty() {
-        todo.push("Nothing: keep the model.".to_owned());
+        todo.push("Keep the model, with the values fitted to this log: fric-cli discover -o writes them.".to_owned());
     }
     let tone = if !worse.is_empty() {
         Tone::Bad
-    } else if is_whole_complete {
+    } else if is_whole_complete && !has_faults {
         Tone::Well
     } else {
         Tone::Mixed
     };
     Verdict { tone, sentence: parts.join(" "), todo }
+}
+
+/// Returns what to do about an effect, as a clause: if the log cannot tell it from another one, both remedies, and the run that tells them apart.
+fn remedy(effect: &EffectResult, as_good: Option<&RunnerUpResult>) -> String {
+    as_good.map_or_else(
+        || effect.remedy(),
+        |other| {
+            format!(
+                "if it is {}, {}; if it is {}, {}; fric-cli excite --separate {},{} writes the run that tells them apart",
+                effect.kind,
+                effect.remedy(),
+                other.kind,
+                other.effect.row().remedy,
+                effect.kind,
+                other.kind
+            )
+        },
+    )
 }
 
 fn capitalised(text: &str) -> String {

@@ -1,5 +1,6 @@
 //! `discover` with a manipulator file.
 
+use fric_lab::fit::Progress;
 use fric_log::output::OutputFile;
 use fric_tendon::edit::rewrite;
 use fric_tendon_lab::discover::discover;
@@ -8,6 +9,7 @@ use fric_tendon_lab::{Run, columns};
 use super::{Model, about, read_table};
 use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
+use crate::measurements::watched;
 use crate::output::{self, JsonTarget, Written};
 use crate::warnings::warn_all;
 use fric_work::provenance::shown_path;
@@ -40,7 +42,9 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let extended = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let table = read_table(log, &columns::of_run(model.disk_count()))?;
     let run = Run::from_columns(&table, model.disk_count()).map_err(|error| about(log, error))?;
-    let found = discover(&model.file, &run, &shown_path(log)).map_err(|error| about(log, error))?;
+    let shown = shown_path(log);
+    let look = |progress: &Progress| discover(&model.file, &run, &shown, progress);
+    let found = watched("searching", "searches", look)?.map_err(|error| about(log, error))?;
     let noise = found.base_noise.map(|noise| noise.warning());
     warn_all(&run.begin_warning().into_iter().chain(noise).collect::<Vec<_>>());
     let mut files = Vec::new();

@@ -1,16 +1,29 @@
-//! Whether a motion that is known too early may be a sensor that follows late: to first order both are the same.
+//! A sensor that follows late where undoing its lag makes more noise than it explains: whether a motion that is known too early may be that, which to first
+//! order is the same, and whether it explains what is left.
 
 use fric_core::effects::Effect;
-use fric_core::effects::sensor_lag::TIME_CONSTANT;
+use fric_core::effects::sensor_lag::{SMOOTHING, TIME_CONSTANT};
 use fric_core::effects::time_delay::DELAY;
+use fric_core::parameters::Values;
 
-use super::{Search, without};
+use super::evidence::inflation;
+use super::{Refusal, STRONG_BIC, Search, Tried, delta_bic, without};
 use crate::candidates::catalogue::{fitted, has};
 use crate::discover::lag::{behind_lag, is_better_than_behind_lag};
 use crate::discover::workbench::{Model, NEAR_ERRORS, Trial};
 
 /// Time constants of the lag, as multiples of the delay. The more a lag is undone, the louder is the noise, so the time constant cannot be fitted.
 const OF_DELAY: [f64; 5] = [0.6, 0.8, 1.0, 1.25, 1.6];
+/// Time constants of a lag that explains what is left: the least, in sample intervals, and each as a multiple of the one before.
+const LEAST_INTERVALS: f64 = 1.5;
+const NEXT: f64 = 1.2;
+const TIME_CONSTANT_COUNT: i32 = 24;
+/// Such a lag is judged behind a low-pass filter that is this many times as slow: undoing it then leaves the noise quieter than it is.
+const BEHIND: f64 = 4.0;
+/// Smoothing with which the lag is undone, as multiples of its time constant. The one that leaves least is told.
+const SMOOTHING_RATIOS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
+/// Number of times that its time constant and the friction are determined one after the other.
+const ROUNDS_OF_LAG: usize = 2;
 
 impl Search<'_, '_> {
     /// Returns the model with a lag of the sensor in the place of a delay, if that explains as much behind the lag; `None` if it does not, if the effect is no
@@ -50,5 +63,74 @@ impl Search<'_, '_> {
         // It was chosen, and counts as a parameter.
         trial.free.extend(fitted(Effect::SensorLag));
         (!is_delay).then_some(trial)
+    }
+
+    /// Returns a lag of the sensor that explains what a model leaves, but is not named, since undoing it makes the noise louder that enters behind the
+    /// sensor's filter. `None` if the evidence is not strong, or if a delay in its place does as well.
+    pub(super) fn hidden_lag(&mut self, found: &[Effect]) -> Option<Tried> {
+        let model = self.fit(found);
+        if has(Effect::SensorLag, &model.values) {
+            return None;
+        }
+        let delayed = self.beside(found, &[Effect::TimeDelay]).pop().filter(|_| !found.contains(&Effect::TimeDelay));
+        let rivals: Vec<Vec<f64>> = std::iter::once(&model)
+            .chain(delayed.as_ref().map(|(_, trial)| trial))
+            .map(|trial| self.bench.residuals_n(&trial.values))
+            .collect();
+        let interval_s = self.bench.record.interval_s;
+        let times_s: Vec<f64> =
+            (0..TIME_CONSTANT_COUNT).map(|place| LEAST_INTERVALS * NEXT.powi(place) * interval_s).collect();
+        let lagging_n = |values: &Values, time_constant_s: f64| {
+            let mut values = *values;
+            (values[TIME_CONSTANT], values[SMOOTHING]) = (time_constant_s, 0.0);
+            self.bench.residuals_n(&values)
+        };
+        let evidence = |time_constant_s: f64| {
+            let of_lag = self.behind(&lagging_n(&model.values, time_constant_s), BEHIND * time_constant_s);
+            // The filter's noise is that of so many independent samples.
+            let independent = interval_s / (2.0 * BEHIND * time_constant_s);
+            let against = |rival: &Vec<f64>| {
+                let of_rival = self.behind(rival, BEHIND * time_constant_s);
+                let of_part = |([lag, count], [other, _]): (&[f64; 2], &[f64; 2])| {
+                    delta_bic(count * independent, lag / other, 1.0)
+                };
+                of_lag.iter().zip(&of_rival).map(of_part).fold(f64::NEG_INFINITY, f64::max)
+            };
+            rivals.iter().map(against).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let of_times = times_s.iter().map(|time_s| (evidence(*time_s), *time_s));
+        let (strongest, mut time_constant_s) = of_times.min_by(|(one, _), (other, _)| one.total_cmp(other))?;
+        if strongest >= -STRONG_BIC {
+            return None;
+        }
+        let mut trial = model.clone();
+        for _ in 0..ROUNDS_OF_LAG {
+            let left = |time_s: f64| {
+                let [[learned, _], _] = self.behind(&lagging_n(&trial.values, time_s), BEHIND * time_constant_s);
+                learned
+            };
+            let of_times = times_s.iter().map(|time_s| (left(*time_s), *time_s));
+            (_, time_constant_s) = of_times.min_by(|(one, _), (other, _)| one.total_cmp(other))?;
+            let with = |ratio: f64| {
+                let mut values = trial.values;
+                (values[TIME_CONSTANT], values[SMOOTHING]) = (time_constant_s, ratio * time_constant_s);
+                Model { values, free: model.free.clone() }
+            };
+            let fits = self.bench.try_all(&SMOOTHING_RATIOS.map(with), NEAR_ERRORS);
+            self.effort.add(&fits);
+            trial = fits.into_iter().min_by(|one, other| one.training.total_cmp(&other.training))?;
+        }
+        let inflation = inflation(self.bench, &trial, &trial.free);
+        Some(Tried { effect: Effect::SensorLag, trial, inflation, refusal: Refusal::Louder { time_constant_s } })
+    }
+
+    /// Returns the sum of squares of residuals behind a low-pass filter, with the number of samples: of the training samples, and of the held-out ones.
+    fn behind(&self, residuals_n: &[f64], filter_s: f64) -> [[f64; 2]; 2] {
+        let filtered_n = behind_lag(&self.bench.record, residuals_n, |past_s| filter_s / (filter_s + past_s));
+        [false, true].map(|held_out| {
+            let used = self.bench.used(held_out);
+            let known = filtered_n.iter().zip(&used).filter(|(left_n, used)| **used && left_n.is_finite());
+            known.fold([0.0, 0.0], |[sum, count], (left_n, _)| [sum + left_n * left_n, count + 1.0])
+        })
     }
 }

@@ -77,7 +77,7 @@ pub struct Named {
 }
 
 /// The reason why a candidate that helps is not named.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
     /// The evidence is weaker than what chance produces.
     Weak,
@@ -105,6 +105,11 @@ pub enum Refusal {
     Straight,
     /// The rest would vanish if the effect's size varied with this condition, so its law is a different one.
     Bent(&'static str),
+    /// Undoing the sensor's lag makes more noise than it explains.
+    Louder {
+        /// Time constant of the lag, s, as it shows behind a low-pass filter.
+        time_constant_s: f64,
+    },
 }
 
 /// The outcome of naming.
@@ -426,6 +431,10 @@ impl<'b, 'a> Search<'b, 'a> {
             })
             .filter(|tried| self.delta_bic(&model, &tried.trial, tried.inflation) < least_evidence)
             .collect();
+        if !is_within_noise && let Some(hidden) = self.hidden_lag(found) {
+            tried.retain(|tried| tried.effect != hidden.effect);
+            tried.push(hidden);
+        }
         let evidence = |tried: &Tried| self.delta_bic(&model, &tried.trial, tried.inflation);
         tried.sort_by(|one, other| evidence(one).total_cmp(&evidence(other)));
         tried

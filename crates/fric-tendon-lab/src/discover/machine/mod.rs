@@ -8,8 +8,8 @@
 pub mod candidate;
 pub mod joint;
 
-use fric_lab::fit::HALF_INTERVAL;
 use fric_lab::fit::result::Numbers;
+use fric_lab::fit::{HALF_INTERVAL, Progress};
 use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
 use rayon::prelude::*;
 
@@ -98,13 +98,13 @@ struct Place {
     units: Units,
 }
 
-/// Searches for wrong numbers. Returns `None` if tensions and markers cannot be compared.
-pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
+/// Searches for wrong numbers. Returns `None` if tensions and markers cannot be compared, or `progress` is stopped.
+pub fn search(file: &ManipulatorFile, run: &Run, progress: &Progress) -> Option<Machine> {
     let candidates = Candidate::all(file.tables(), run.has_markers());
     let kept = thinned_to(run.samples(), MOST_SAMPLES);
     let samples: Vec<RunSample> = kept.iter().filter_map(|place| run.samples().get(*place)).cloned().collect();
     let few = Run::new(samples, run.disk_count()).ok()?;
-    let mut search = Search { joint: Joint::new(file, &few, &candidates)?, candidates };
+    let mut search = Search { joint: Joint::new(file, &few, &candidates, progress)?, candidates };
     let start = search.joint.start()?;
     let (common, units) = (search.joint.common(), search.joint.units(&start));
     let jacobian = search.joint.jacobian(&start)?;
@@ -130,7 +130,7 @@ pub fn search(file: &ManipulatorFile, run: &Run) -> Option<Machine> {
         let step_s =
             step_nm.zip(near_s).and_then(|(step_nm, near_s)| step_time_s(run, &kept, near_s, step_nm)).or(near_s);
         let count = search.count(&now.point);
-        search = Search { joint: Joint::new(file, run, &search.candidates)?, ..search };
+        search = Search { joint: Joint::new(file, run, &search.candidates, progress)?, ..search };
         search.joint.set_step_s(step_s);
         before = search.settled(search.joint.again(&before.point)?, before.set)?;
         now = search.settled(search.joint.again(&now.point)?, now.set)?;
@@ -170,12 +170,12 @@ fn step_time_s(run: &Run, kept: &[usize], near_s: f64, step_nm: f64) -> Option<f
     Some(0.5 * (time_s(begin - 1) + time_s(begin)))
 }
 
-struct Search {
-    joint: Joint,
+struct Search<'a> {
+    joint: Joint<'a>,
     candidates: Vec<Candidate>,
 }
 
-impl Search {
+impl Search<'_> {
     fn place(&self, point: Point, set: Set) -> Option<Place> {
         let jacobian = self.joint.jacobian(&point)?;
         let units = self.joint.units(&point);

@@ -14,7 +14,7 @@ pub struct StandardError {
     pub white: f64,
 }
 
-impl Joint {
+impl Joint<'_> {
     /// Returns the standard error of each free number of a set at its minimum, by index. Noise of a grating moves all disks beyond it, and residuals
     /// are correlated, so the scatter of the scores of whole samples and of blocks counts where it exceeds that of white noise. The error of the
     /// model itself is added.

@@ -14,7 +14,7 @@ const MOST_HALVINGS: i32 = 5;
 /// A step that decreases the cost by less than this is the last one.
 const SETTLED: f64 = 0.05;
 
-impl Joint {
+impl Joint<'_> {
     /// Returns the normal equations of all numbers.
     pub fn gram(&self, point: &Point, jacobian: &Jacobian, units: Units) -> (DMatrix<f64>, DVector<f64>) {
         let weights = self.weights(point, units);

@@ -9,6 +9,7 @@ mod fit;
 
 use std::sync::Arc;
 
+use fric_lab::fit::Progress;
 use fric_lab::statistics::white_noise_throughout;
 use fric_tendon::file::{ManipulatorFile, OneOrEach, USUAL_SIGMA_N_PER_M};
 use rayon::prelude::*;
@@ -35,8 +36,8 @@ const LOOSE_LINE: f64 = 1000.0;
 const WIDE: f64 = 20.0;
 
 /// The run with all numbers that take part.
-pub struct Joint {
-    pub runs: Runs<'static>,
+pub struct Joint<'a> {
+    pub runs: Runs<'a>,
     /// Numbers of all candidates and of the friction. The lines follow, two numbers per grating.
     unknowns: Vec<Unknown>,
     line_count: usize,
@@ -86,10 +87,10 @@ impl Jacobian {
     }
 }
 
-impl Joint {
-    /// Prepares the cost. Returns `None` if nothing can be compared.
-    pub fn new(file: &ManipulatorFile, run: &Run, candidates: &[Candidate]) -> Option<Self> {
-        let mut runs = Runs::new(file, std::slice::from_ref(run), None).ok()?;
+impl<'a> Joint<'a> {
+    /// Prepares the cost. Returns `None` if nothing can be compared. There are no points once `progress` is stopped.
+    pub fn new(file: &ManipulatorFile, run: &Run, candidates: &[Candidate], progress: &'a Progress) -> Option<Self> {
+        let mut runs = Runs::new(file, std::slice::from_ref(run), Some(progress)).ok()?;
         let tendon = &mut runs.given.tendon;
         if tendon.mu.as_slice().iter().all(|mu| *mu == 0.0) {
             tendon.mu = OneOrEach::One(START_MU);
