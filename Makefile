@@ -46,6 +46,7 @@ format:
 
 lint:
 	$(CARGO) clippy --workspace --all-targets --quiet -- -D warnings
+	$(CARGO) clippy --manifest-path fuzz/Cargo.toml --no-default-features --target-dir target --quiet -- -D warnings
 
 test-rust:
 	$(CARGO) test --workspace --quiet

@@ -29,7 +29,7 @@ fuzz_target!(|data: &[u8]| {
     let log = Log::from(open().expect("a log that has been read"));
     let attached = AttachedRobot::find(&log).ok().flatten();
     let robot = attached.as_ref().map_or(&*ROBOT, |attached| &attached.robot);
-    let Ok(paths) = SignalPaths::of_robot(&robot) else { return };
+    let Ok(paths) = SignalPaths::of_robot(robot) else { return };
     let names = robot.cable_names();
     let Ok(mut replay) = Replay::new(&robot.params()) else { return };
     let mut rows = SignalReader::new(log, paths, &names);

@@ -1,6 +1,7 @@
 //! A text as a robot file: parsed, written and parsed again; edited and parsed again; run.
 #![no_main]
 
+use fric_core::effects::Effect;
 use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
 use fric_core::robot::file::{RobotFile, RobotFileError, RobotOptions};
 use fric_core::{AnyCompensator, CableInput, Pose};
@@ -9,8 +10,8 @@ use libfuzzer_sys::fuzz_target;
 const FRICTION: FrictionEdit =
     FrictionEdit { mu: Some(0.0161), sigma_n_per_m: Some(998.5), viscous_n_s_per_m: None, offset_n: Some(-1e-3) };
 const EFFECTS: [EffectEdit<'static>; 2] = [
-    EffectEdit::Set { kind: "stribeck", parameters: &[("ratio", 0.5), ("velocity_m_per_s", 0.02)] },
-    EffectEdit::Set { kind: "bearing_drag", parameters: &[("drag_n", 0.25)] },
+    EffectEdit::Set { effect: Effect::Stribeck, parameters: &[("ratio", 0.5), ("velocity_m_per_s", 0.02)] },
+    EffectEdit::Set { effect: Effect::BearingDrag, parameters: &[("drag_n", 0.25)] },
 ];
 
 fuzz_target!(|text: &str| {
@@ -38,7 +39,7 @@ fn check_error(error: &RobotFileError, text: &str) {
 /// An edited text says what the edited options say, or is refused; every other cable stays.
 fn edit(text: &str, robot: &RobotFile) {
     let Some(name) = robot.cable_names().pop() else { return };
-    let edits = [CableEdit { name, friction: FRICTION, effects: &EFFECTS }];
+    let edits = [CableEdit { name, friction: FRICTION, effects: &EFFECTS, ..CableEdit::default() }];
     let Ok(edited) = rewrite(text, "robot.toml", &edits) else { return };
     let options = RobotFile::parse(&edited, "edited").unwrap_or_else(|error| panic!("{error}\n{edited}"));
     assert_eq!(*options.options(), changed(robot.options()));
@@ -52,7 +53,8 @@ fn changed(options: &RobotOptions) -> RobotOptions {
     cable.friction.sigma_n_per_m = FRICTION.sigma_n_per_m;
     cable.friction.offset_n = FRICTION.offset_n.unwrap_or(cable.friction.offset_n);
     for edit in EFFECTS {
-        let EffectEdit::Set { kind, parameters } = edit else { continue };
+        let EffectEdit::Set { effect, parameters } = edit else { continue };
+        let kind = effect.kind();
         if !cable.effects.iter().any(|effect| effect.kind == kind) {
             let parameters = std::collections::BTreeMap::new();
             cable.effects.push(fric_core::robot::file::EffectTable { kind: kind.to_owned(), parameters });

@@ -167,3 +167,39 @@ fn a_trembling_cable_is_no_hum() {
     let found = discover_wrench(&log.measured(&truth, Reference::Wrench), &Progress::new()).unwrap();
     assert!(found.cables.iter().all(|cable| cable.faults.is_empty()));
 }
+
+/// Returns what is found where a force from outside is not in the log. It is given in each cycle, N, by its time, s, and the platform's position, m.
+fn look_under(force_n: impl Fn(f64, [f64; 3]) -> [f64; 3], seed: u64) -> WrenchDiscovery {
+    const CYCLE_S: f64 = 0.004;
+    let truth = robot(|text| text);
+    let mut log = record(&truth, seed, 10.0);
+    let mut time_s = 0.0;
+    for cycle in &mut log.0 {
+        let mut wrench = cycle.outside_wrench.unwrap();
+        let force_n = force_n(time_s, cycle.pose.unwrap().position_m.into());
+        wrench.force_n.iter_mut().zip(force_n).for_each(|(known_n, force_n)| *known_n -= force_n);
+        cycle.outside_wrench = Some(wrench);
+        time_s += CYCLE_S;
+    }
+    discover_wrench(&log.measured(&truth, Reference::Wrench), &Progress::new()).unwrap()
+}
+
+/// A force that comes and goes looks like noise to the whitening.
+#[test]
+fn a_gust_that_the_log_lacks_is_no_noise() {
+    let gusts = |time_s: f64, _: [f64; 3]| {
+        let blows = (3.0..5.0).contains(&time_s) || (7.0..8.5).contains(&time_s);
+        if blows { [1.5, 0.5, -0.3] } else { [0.0; 3] }
+    };
+    let found = look_under(gusts, 21);
+    assert!(found.geometry.is_empty() && names(&found).iter().all(Vec::is_empty), "{:?}", names(&found));
+    assert_eq!(found.verdict, Verdict::Unexplained);
+}
+
+/// A force that goes with the position looks like a wrong point of a cable, which the lengths contradict.
+#[test]
+fn a_hose_that_the_log_lacks_is_no_wrong_point() {
+    let found = look_under(|_, [x_m, y_m, z_m]| [-8.0 * x_m, -8.0 * y_m, -2.0 - 8.0 * z_m], 22);
+    assert!(found.geometry.iter().all(|of| of.geometry.cable().is_none()), "{:?}", found.geometry);
+    assert_eq!(found.verdict, Verdict::Unexplained);
+}

@@ -105,6 +105,8 @@ pub enum Refusal {
     Straight,
     /// The rest would vanish if the effect's size varied with this condition, so its law is a different one.
     Bent(&'static str),
+    /// The lengths of the log contradict the correction of the robot file.
+    Contradicted,
     /// Undoing the sensor's lag makes more noise than it explains.
     Louder {
         /// Time constant of the lag, s, as it shows behind a low-pass filter.

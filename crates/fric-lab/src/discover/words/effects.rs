@@ -153,6 +153,7 @@ impl Refusal {
                     condition(signal)
                 )
             }
+            Self::Contradicted => "the lengths of the log contradict it".to_owned(),
             Self::Louder { time_constant_s } => format!(
                 "undoing it makes the noise louder that enters behind the sensor's filter; behind a low-pass filter it shows a time constant of about {}",
                 quantity(time_constant_s, None, "s")

@@ -1,5 +1,6 @@
 //! What was found for all cables together by the wrench, in words.
 
+use crate::discover::report::Verdict;
 use crate::discover::result::{GeometryResult, WrenchComponent, WrenchGap};
 use crate::discover::wrench::Geometry;
 use crate::replay::WrenchReference;
@@ -37,7 +38,15 @@ impl WrenchGap {
              same factor: weigh the platform, or check one sensor with a known load."
                 .to_owned()
         });
-        alike.chain(self.corrections()).chain(scale).chain(tried).collect()
+        let rest = self.after.filter(|_| self.verdict == Verdict::Unexplained.name()).map(|after| {
+            let [after, noise] =
+                [after, self.noise_floor].map(|of| format!("{:.4} N and {:.4} Nm", of.force_rms_n, of.torque_rms_nm));
+            format!(
+                "Of the wrench {after} are left, where the noise is {noise}. If no cable is told to be the cause, look for what acts on \
+                 the platform and is not in the log: a force from outside, or a load that changes."
+            )
+        });
+        alike.chain(self.corrections()).chain(scale).chain(tried).chain(rest).collect()
     }
 }
 

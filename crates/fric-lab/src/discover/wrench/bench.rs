@@ -347,6 +347,25 @@ impl<'a> Bench<'a> {
         columns.zip(deviations).map(nearest).collect()
     }
 
+    /// Returns the root mean square of the wrench's error if every force is off by this fraction of itself, and its sensor wanders by as much: six whitened
+    /// components.
+    pub fn believed_wrench(&self, model: &Model, ratio: f64, wander_n: &[f64]) -> [f64; 6] {
+        let (structure, _) = self.description.changed(&model.changes);
+        let count = self.records.len();
+        let (mut squares, mut samples) = (Vector6::<f64>::zeros(), 0.0);
+        for (place, _) in self.counts.iter().enumerate().filter(|(_, counts)| **counts) {
+            let columns = structure.iter().skip(place * count).take(count);
+            for ((column, record), wander_n) in columns.zip(&self.records).zip(wander_n) {
+                let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
+                let error_n = (ratio * sensor_n * record.params.frictionless_gain()).hypot(*wander_n);
+                let of_cable = self.whitening * column * error_n;
+                squares += of_cable.component_mul(&of_cable);
+            }
+            samples += 1.0;
+        }
+        (squares / samples).map(f64::sqrt).into()
+    }
+
     /// Returns the root mean square of [`of_cable_n`](Self::of_cable_n) if the force of each cable has an independent error of this fraction of its
     /// tension, N.
     pub fn believed_n(&self, model: &Model, cable: usize, ratio: f64) -> f64 {

@@ -32,6 +32,7 @@ use super::cable::acts;
 use super::extended::extended;
 use super::naming::Refusal;
 use super::report::{CableDiscovery, Verdict};
+use super::rest::WORTH;
 use crate::fit::wrench::{ReferenceWrenches, first_model};
 use crate::fit::{CableRecord, FitError, Measurements, Progress, Stages};
 use crate::replay::{WrenchErrors, WrenchReference};
@@ -150,11 +151,18 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     let mut all = bench.clone();
     all.blocks.iter_mut().for_each(|block| block.held_out = false);
     all.whitening = naming.whitening;
-    let fitted = naming.confirmed(&all, |model| {
-        let fit = |bench: &Bench<'_>, model: &bench::Model| bench.fit(&with_given(bench, model), AT_MINIMUM);
-        reweighted(&all, fit(&all, model), fit)
-    });
-    let (fitted, whitening) = fitted.ok_or_else(too_short)?;
+    let confirmed = |naming: &mut Naming| {
+        naming.confirmed(&all, |model| {
+            let fit = |bench: &Bench<'_>, model: &bench::Model| bench.fit(&with_given(bench, model), AT_MINIMUM);
+            reweighted(&all, fit(&all, model), fit)
+        })
+    };
+    let (mut fitted, mut whitening) = confirmed(&mut naming).ok_or_else(too_short)?;
+    // Names that leave more of the wrench than there was stand for something that the whitening has taken for noise.
+    if !naming.named.is_empty() && leaves_more(&bench, &base.model, &fitted.model) {
+        naming = Naming::start(base.clone(), &bench.whitening, Vec::new());
+        (fitted, whitening) = confirmed(&mut naming).ok_or_else(too_short)?;
+    }
     all.whitening = whitening;
     bench.whitening = whitening;
     let covariances = all.covariances(&fitted.model);
@@ -203,6 +211,21 @@ fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
         held.values[of.member][place] = bench.records[of.member].params.values()[place];
     }
     held
+}
+
+/// Whether a model leaves more of the wrench than another one on the held-out samples, by more than what its noise may differ.
+fn leaves_more(bench: &Bench<'_>, before: &bench::Model, after: &bench::Model) -> bool {
+    let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
+    let held_out = bench.used(true);
+    let components = |model: &bench::Model| WrenchDeviation::of(&plain.deviations(model), &held_out).components;
+    let Some(noise) = plain.noise(before) else { return false };
+    let more = components(after).into_iter().zip(components(before)).zip(noise);
+    let more = more.filter(|(_, noise)| *noise > 0.0);
+    let excess: f64 =
+        more.clone().map(|((after, before), noise)| (after * after - before * before) / (noise * noise)).sum();
+    #[expect(clippy::cast_precision_loss, reason = "at most six")]
+    let count = more.count() as f64;
+    excess > WORTH * count
 }
 
 fn too_short() -> FitError {

@@ -80,6 +80,10 @@ impl Search<'_> {
             && self.do_cables_differ(found, effect, trial)
         {
             Some(Refusal::Unsteady("cable"))
+        } else if let Candidate::Geometry(of) = candidate
+            && self.bench.description.is_contradicted(of, &trial.model.changes, &self.bench.records)
+        {
+            Some(Refusal::Contradicted)
         } else {
             None
         };
