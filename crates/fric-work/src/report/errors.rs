@@ -48,7 +48,8 @@ pub fn page(result: &ReplayResult, series: &Series, provenance: &Provenance) -> 
         (wrench(&mut plots, series))
     };
     let title = format!("{}: replay, forces at the platform", result.robot);
-    Page { title, verdict: result.verdict(), content, plots, cables: names, provenance }.into_html()
+    Page { title, verdict: result.verdict(), content, plots, cables: names, source: provenance.logs(), provenance }
+        .into_html()
 }
 
 /// Returns the errors as a table.

@@ -36,7 +36,19 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &P
     };
     let title = format!("{}: friction fitted", result.robot);
     let (verdict, plots) = (verdict::of_fit(result), Plots::default());
-    Page { title, verdict, content, plots, cables: Vec::new(), provenance }.into_html()
+    Page { title, verdict, content, plots, cables: Vec::new(), source: provenance.logs(), provenance }.into_html()
+}
+
+/// Returns the samples that were used and left out, and how the search ended.
+fn samples(result: &FitResult) -> Markup {
+    let (header, rows) = result.samples();
+    html! {
+        table {
+            tr { @for head in header { th scope="col" { (head) } } }
+            @for row in rows { tr { @for cell in row { td { (cell) } } } }
+        }
+        p.soft { "Samples of the fit, and those that were left out." }
+    }
 }
 
 /// Returns the values as a table.

@@ -24,7 +24,16 @@ pub fn page(result: &HysteresisResult, loops: &[HysteresisLoop], provenance: &Pr
         }
     };
     let title = format!("{}: hysteresis of the wrench", result.robot);
-    Page { title, verdict: verdict::of_hysteresis(result), content, plots, cables: Vec::new(), provenance }.into_html()
+    Page {
+        title,
+        verdict: verdict::of_hysteresis(result),
+        content,
+        plots,
+        cables: Vec::new(),
+        source: provenance.logs(),
+        provenance,
+    }
+    .into_html()
 }
 
 /// Returns the widths as a table.

@@ -70,7 +70,16 @@ pub fn page(overview: &Overview<'_>, provenance: &Provenance) -> String {
         @if let Some(series) = &overview.series { (signals(&mut plots, series, &overview.cables)) }
     };
     let title = format!("{}what is in the log", overview.model.map_or_else(String::new, |model| format!("{model}: ")));
-    Page { title, verdict: verdict(overview), content, plots, cables: overview.cables.clone(), provenance }.into_html()
+    Page {
+        title,
+        verdict: verdict(overview),
+        content,
+        plots,
+        cables: overview.cables.clone(),
+        source: provenance.logs(),
+        provenance,
+    }
+    .into_html()
 }
 
 fn verdict(overview: &Overview<'_>) -> Verdict {

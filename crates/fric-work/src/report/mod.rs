@@ -49,7 +49,10 @@ struct Page<'a> {
 
 impl Page<'_> {
     fn into_html(self) -> String {
-        let Self { title, verdict: Verdict { tone, sentence, todo }, content, plots, cables, provenance } = self;
+    /// Names of the files that the page is about.
+    source: String,
+        let Self { title, verdict: Verdict { tone, sentence, todo }, content, plots, cables, source, provenance } =
+            self;
         let tone = match tone {
             Tone::Well => "well",
             Tone::Mixed => "mixed",
@@ -68,7 +71,7 @@ impl Page<'_> {
                 body {
                     main {
                         h1 class=(tone) { (sentence) }
-                        p.about { (title) " · " (provenance.logs()) }
+                        p.about { (title) " · " (source) }
                         @if !todo.is_empty() {
                             div.todo { h2 { "What to do" } ul { @for sentence in &todo { li { (sentence) } } } }
                         }

@@ -48,7 +48,16 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance:
     };
     let title = format!("{}: what the model lacks", result.robot);
     let names = result.cables.iter().map(|cable| cable.name.as_str()).collect();
-    Page { title, verdict: verdict::of_discovery(result), content, plots, cables: names, provenance }.into_html()
+    Page {
+        title,
+        verdict: verdict::of_discovery(result),
+        content,
+        plots,
+        cables: names,
+        source: provenance.logs(),
+        provenance,
+    }
+    .into_html()
 }
 
 /// Returns the verdicts as a table.
