@@ -4,9 +4,9 @@ use fric_lab::fit::result::{FitCableResult, FitResult, LogValues};
 use fric_lab::text::plain;
 use maud::{Markup, html};
 
-use super::Page;
 use super::errors::wrench_table;
 use super::plot::Plots;
+use super::{Page, signed};
 use crate::fit_report::{Correlation, correlations, value_text};
 use crate::provenance::Provenance;
 use crate::verdict::{self, left_in_words};
@@ -17,10 +17,11 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &P
     let content = html! {
         p.soft { "Fitted to " (reference_in_words(result.reference)) ". ± is one standard error." }
         (errors(result))
+        @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
+        (samples(result))
         @for (cable, fit) in result.cables.iter().zip(fits) {
             section {
                 h2 { (cable.name) }
-                p.soft { (cable.samples) " samples, " (cable.evaluations) " evaluations: " (cable.termination) "." }
                 @if !cable.faults.is_empty() {
                     h3 { "Faults of the recording" }
                     ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
@@ -28,11 +29,10 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &P
                 (values(std::slice::from_ref(cable)))
                 (log_values(&cable.per_log))
                 @for Correlation { first, second, value } in correlations(fit) {
-                    p.soft { "Correlation of " (first) " and " (second) ": " (format!("{value:.3}")) }
+                    p.soft { "Correlation of " (first) " and " (second) ": " (signed(&format!("{value:.3}"))) }
                 }
             }
         }
-        @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
     };
     let title = format!("{}: friction fitted", result.robot);
     let (verdict, plots) = (verdict::of_fit(result), Plots::default());
@@ -68,11 +68,11 @@ fn reference_in_words(reference: &str) -> &'static str {
 fn values(cables: &[FitCableResult]) -> Markup {
     html! {
         table {
-            tr { th { "cable" } th { "parameter" } th { "value" } th { "±" } th.words { "" } }
+            tr { th { "cable" } th.words { "parameter" } th { "value" } th { "±" } th.words { "" } }
             @for cable in cables {
                 @for (name, value) in &cable.parameters.0 {
                     tr {
-                        td { (cable.name) } td { (name) } td { (value_text(*value, cable.standard_errors.get(name))) }
+                        td { (cable.name) } td.words { (name) } td { (value_text(*value, cable.standard_errors.get(name))) }
                         td { (cable.standard_errors.get(name).map_or_else(|| "–".to_owned(), plain)) }
                         td.words { (remark(cable, name)) }
                     }
