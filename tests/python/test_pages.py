@@ -188,7 +188,7 @@ def test_numbers_of_a_discovery_agree(pages):
     # Table and chart of the friction over speed are the same numbers.
     (speed,) = [plot for plot in charts["plots"] if plot["caption"].startswith("Friction over speed")]
     for value in speed["traces"][0]["values"]["y"]:
-        assert value is None or f"{value:.4f}" in text
+        assert value is None or f"{value:.4f}".replace("-", "−") in text
 
 
 def test_pages_say_where_they_come_from(pages):
