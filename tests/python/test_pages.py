@@ -126,6 +126,7 @@ def test_charts_answer_the_mouse(pages, name, width_px):
     words = seen["hovered"]["words"].replace("−", "-")
     assert f"time {time_s:.3f} s" in words
     assert all(re.search(rf"(?<![\d.]){re.escape(f'{value:.4f}')}(?!\d)", words) for value in values if value and abs(value) > 1e-3)
+    assert seen["hovered"]["moved_px"] == 0
     # What is dragged over is what all charts show then.
     zoomed = [start + share * (end - start) for share in (0.25, 0.5)]
     assert all(np.allclose(view, zoomed, atol=0.02 * (end - start)) for view in seen["zoomed"])
