@@ -72,7 +72,7 @@ fn values(cables: &[FitCableResult]) -> Markup {
             @for cable in cables {
                 @for (name, value) in &cable.parameters.0 {
                     tr {
-                        td { (cable.name) } td.words { (name) } td { (value_text(*value, cable.standard_errors.get(name))) }
+                        td { (cable.name) } td.words { (name) } td { (signed(&value_text(*value, cable.standard_errors.get(name)))) }
                         td { (cable.standard_errors.get(name).map_or_else(|| "–".to_owned(), plain)) }
                         td.words { (remark(cable, name)) }
                     }
@@ -94,7 +94,7 @@ pub(crate) fn log_values(logs: &[LogValues]) -> Markup {
                     @for (name, value) in &log.parameters.0 {
                         tr {
                             td.words { (log.log) } td.words { (name) }
-                            td { (value_text(*value, log.standard_errors.get(name))) }
+                            td { (signed(&value_text(*value, log.standard_errors.get(name)))) }
                             td { (log.standard_errors.get(name).map_or_else(|| "–".to_owned(), plain)) }
                         }
                     }
@@ -129,12 +129,12 @@ fn errors(result: &FitResult) -> Markup {
         @if result.cables.iter().any(|cable| cable.before.is_some()) {
             table {
                 tr {
-                    th scope="col" { "cable" } th scope="col" { "samples" } th scope="col" { "rms before [N]" } th scope="col" { "after [N]" }
+                    th scope="col" { "cable" } th scope="col" { "rms before [N]" } th scope="col" { "after [N]" }
                     th scope="col" { "left" }
                 }
                 @for cable in &result.cables {
                     tr {
-                        td { (cable.name) } td { (cable.samples) }
+                        td { (cable.name) }
                         td { (super::number(cable.before.map(|error| error.rms_n))) }
                         td { (super::number(cable.after.map(|error| error.rms_n))) }
                         td { (left(cable).map_or_else(|| "–".to_owned(), left_in_words)) }

@@ -138,9 +138,9 @@ fn listed(table: &InfoTable) -> Markup {
     }
 }
 
-/// Returns a text that may break after each slash of a path.
+/// Returns a text that may break after the slashes of a path.
 fn breakable(text: &str) -> Markup {
-    html! { @for part in text.split_inclusive('/') { (part) wbr; } }
+    html! { @for part in text.split_inclusive('/') { (part) @if part.len() > 1 { wbr; } } }
 }
 
 /// Plots forces and lengths of every cable.
