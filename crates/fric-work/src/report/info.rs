@@ -138,9 +138,12 @@ fn listed(table: &InfoTable) -> Markup {
     }
 }
 
-/// Returns a text that may break after the slashes of a path.
+/// Returns a text that may break after the last slash of a path.
 fn breakable(text: &str) -> Markup {
-    html! { @for part in text.split_inclusive('/') { (part) @if part.len() > 1 { wbr; } } }
+    match text.rsplit_once('/') {
+        Some((path, name)) if !path.is_empty() => html! { (path) "/" wbr; (name) },
+        _ => html! { (text) },
+    }
 }
 
 /// Plots forces and lengths of every cable.
