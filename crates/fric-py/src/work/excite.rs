@@ -160,8 +160,8 @@ pub fn excite(
     let text = robot.borrow().to_toml()?;
     let provenance = Provenance::of_call("fric.excite", &[], Some((&file.options().name, &text)));
     let page = preview::page(&file, &excitation, &series, purpose.as_ref(), &provenance);
-    let expectations = purpose.iter().flat_map(|purpose| &purpose.expectations);
-    let told: String = expectations.flat_map(|line| ["\n  ", line]).collect();
+    let expected = purpose.map_or_else(Vec::new, |purpose| purpose.expectations);
+    let told: String = expected.iter().flat_map(|line| ["\n  ", line]).collect();
     let summary = format!("{}{told}", describe(&excitation, &series));
     let names = file.cable_names();
     let count = names.len();
