@@ -3,6 +3,7 @@
 import datetime
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -319,6 +320,11 @@ def test_limits_and_a_last_log_out_of_line():
     kinds = {alarm.reason: alarm for alarm in limited.alarms}
     assert set(kinds) == {"history", "limit"} and "above the limit of 0.0215" in kinds["limit"].text
     assert kinds["limit"].date > kinds["history"].date
+    # A chart marks the date of its own alarm, the later one further to the right.
+    sections = [section.split("</section>")[0] for section in limited.to_html().split('<section class="alarm"')[1:]]
+    marked = {alarm.reason: re.findall(r'class="since" d="M([\d.]+),', section) for alarm, section in zip(limited.alarms, sections)}
+    assert [len(at) for at in marked.values()] == [1, 1] and float(marked["limit"][0]) > float(marked["history"][0])
+    assert all(f"since {alarm.date:%Y-%m-%d}" in section for alarm, section in zip(limited.alarms, sections))
     ahead = fleet.trend(table(series), limits={"rig/cable1/mu": (None, 0.024)})
     assert "at this pace it reaches 0.024 about 202" in ahead.alarms[0].text and len(ahead.alarms) == 1
     day, value, error, _ = made(2, "none")

@@ -126,6 +126,7 @@ def test_charts_answer_the_mouse(pages, name, width_px):
     words = seen["hovered"]["words"].replace("−", "-")
     assert f"time {time_s:.3f} s" in words
     assert all(re.search(rf"(?<![\d.]){re.escape(f'{value:.4f}')}(?!\d)", words) for value in values if value and abs(value) > 1e-3)
+    assert seen["hovered"]["moved_px"] == 0
     # What is dragged over is what all charts show then.
     zoomed = [start + share * (end - start) for share in (0.25, 0.5)]
     assert all(np.allclose(view, zoomed, atol=0.02 * (end - start)) for view in seen["zoomed"])
@@ -188,7 +189,27 @@ def test_numbers_of_a_discovery_agree(pages):
     # Table and chart of the friction over speed are the same numbers.
     (speed,) = [plot for plot in charts["plots"] if plot["caption"].startswith("Friction over speed")]
     for value in speed["traces"][0]["values"]["y"]:
-        assert value is None or f"{value:.4f}" in text
+        assert value is None or f"{value:.4f}".replace("-", "−") in text
+
+
+def test_a_corrected_recording_is_drawn_before_and_after(tmp_path):
+    bench, log, page = (tmp_path / name for name in ("bench.toml", "late.csv", "late.html"))
+    bench.write_text(SLOW_BENCH, encoding="utf-8")
+    made = fric.simulate(fric.Robot.from_toml(SLOW_BENCH), seed=5, duration_s=24.0)
+    # Late by five samples.
+    late_n = np.concatenate([np.full(5, np.nan), made.reference_force_n[:-5, 0]])
+    columns = [made.time_s, made.sensor_force_n[:, 0], made.length_m[:, 0], made.speed_m_per_s[:, 0], late_n]
+    head = "time_s," + ",".join(f"winch.{key}" for key in ("force_n", "length_m", "speed_m_per_s", "reference_n"))
+    np.savetxt(log, np.column_stack(columns), fmt="%.9g", delimiter=",", header=head, comments="")
+    run("discover", log, "--model", bench, "--report", page)
+    text, charts = numbers_of(page)
+    (delay_ms,) = re.findall(r"the reference comes late by ([\d.]+) ms", text)
+    assert float(delay_ms) == pytest.approx(20, abs=0.5)
+    names = ["before: given model, fitted", "after: recording corrected"]
+    (residual,) = [plot for plot in charts["plots"] if plot["caption"].startswith("Residual: model less reference")]
+    assert [trace["name"] for trace in residual["traces"]] == names
+    least, corrected = (trace["values"]["least"]["least"] for trace in residual["traces"])
+    assert least < 1.3 * corrected < 0
 
 
 def test_pages_say_where_they_come_from(pages):

@@ -76,9 +76,20 @@ impl Provenance {
     /// Returns the names of the logs as a phrase; `arrays` if there is no file.
     #[must_use]
     pub fn logs(&self) -> String {
+        let names = self.names("log");
+        if names.is_empty() { "arrays".to_owned() } else { names }
+    }
+
+    /// Returns the name of the robot file.
+    #[must_use]
+    pub fn model(&self) -> String {
+        self.names("model")
+    }
+
+    fn names(&self, role: &str) -> String {
         let names: Vec<&str> =
-            self.inputs.iter().filter(|input| input.role == "log").map(|input| input.name.as_str()).collect();
-        if names.is_empty() { "arrays".to_owned() } else { names.join(", ") }
+            self.inputs.iter().filter(|input| input.role == role).map(|input| input.name.as_str()).collect();
+        names.join(", ")
     }
 }
 
@@ -188,6 +199,6 @@ mod tests {
         let made = Provenance::of_call("fric.replay", &[], Some(("rig", "abc")));
         let hash = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(made.inputs, [Input { role: "model", name: "rig".to_owned(), sha256: Some(hash.to_owned()) }]);
-        assert_eq!(made.logs(), "arrays");
+        assert_eq!([made.logs(), made.model()], ["arrays", "rig"]);
     }
 }

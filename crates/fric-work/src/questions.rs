@@ -32,6 +32,17 @@ pub enum Request<'a> {
     Found(&'a str),
 }
 
+impl Request<'_> {
+    /// Returns the command that answers the question from the log of the run.
+    #[must_use]
+    pub const fn command(&self) -> &'static str {
+        match self {
+            Self::Separate(_) | Self::Found(_) => "discover",
+            Self::Determine(_) => "fit",
+        }
+    }
+}
+
 /// The reason why there are no questions.
 #[derive(Debug, Error)]
 #[non_exhaustive]

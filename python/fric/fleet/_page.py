@@ -7,7 +7,7 @@ from html import escape
 
 from .._results.base import counted
 from ._alarms import day
-from ._chart import chart
+from ._chart import chart, legend
 from ._run import told_once
 from ._trend import Alarm, Series, Trend
 from ._words import TOO_FEW, between, headline, may_show_a_change, provenance, remarks, since, verdict
@@ -38,7 +38,11 @@ dt { color: var(--soft); } dd { margin: 0; }
 svg { width: 100%; height: auto; display: block; } svg text { fill: var(--soft); font: 12px system-ui, sans-serif; }
 svg .axis { stroke: var(--line); stroke-width: 1; fill: none; } svg .value { fill: var(--before); } svg .error { stroke: var(--before); stroke-width: 1; }
 svg .fitted { stroke: var(--after); stroke-width: 2; fill: none; stroke-linejoin: round; } svg .when { fill: var(--flag); opacity: .18; }
-svg .since { stroke: var(--flag); stroke-width: 1.2; } svg .limit { stroke: var(--soft); stroke-width: 1.2; stroke-dasharray: 5 4; }
+svg .since { stroke: var(--flag); stroke-width: 1.2; } svg .bend { stroke: var(--soft); stroke-width: 1.2; stroke-dasharray: 1 3; } svg .limit { stroke: var(--soft); stroke-width: 1.2; stroke-dasharray: 5 4; }
+.legend { font-size: .85rem; } .keys { display: inline-block; margin-right: .9rem; } .key { display: inline-block; margin-right: .35em; vertical-align: -.1em; print-color-adjust: exact; }
+.key.value { width: .45em; height: .45em; border-radius: 50%; background: var(--before); vertical-align: .15em; } .key.fitted { width: 1.1em; border-top: 2px solid var(--after); vertical-align: .25em; }
+.key.since { height: .9em; border-left: 2px solid var(--flag); } .key.when { width: .9em; height: .9em; background: color-mix(in srgb, var(--flag) 18%, transparent); }
+.key.bend { height: .9em; border-left: 2px dotted var(--soft); } .key.limit { width: 1.3em; border-top: 2px dashed var(--soft); vertical-align: .25em; }
 a { color: var(--after); } a:focus-visible { outline: 2px solid var(--after); }
 @media (max-width: 40rem) { table, caption, tbody, tr, td, tbody th { display: block; text-align: left; border: 0; padding: 0; } table { font-size: .85rem; }
   thead { position: absolute; left: -10000px; } tr { border-bottom: 1px solid var(--line); padding: .4rem 0; }
@@ -68,7 +72,7 @@ def page(trend: Trend) -> str:
 
 
 def _to_do(trend: Trend) -> str:
-    named = [f"{one.robot}, {one.cable}: {one.remedy}" for one in trend.alarms]
+    named = list(dict.fromkeys(f"{one.robot}, {one.cable}: {one.remedy}" for one in trend.alarms))
     sentences = named or ["Nothing: go on recording."]
     return f'<div class="todo"><h2>What to do</h2><ul>{"".join(f"<li>{escape(text)}</li>" for text in sentences)}</ul></div><h2>Evidence</h2>'
 
@@ -114,7 +118,8 @@ def _alarm(trend: Trend, place: int, alarm: Alarm) -> str:
     names = ["parameter", "kind", "since (95 %)", "before", "after", "size", "ΔBIC"]
     changes = _table("Changes; a ΔBIC of −10 is very strong evidence", names, rows, narrow="stacked") if rows else ""
     head = f"<h3>{escape(alarm.robot)}, {escape(alarm.cable)}: <span>{_REASONS[alarm.reason]}</span></h3>"
-    drawn = "".join(_figure(one) for one in sorted(shown, key=lambda one: alarm.parameters.index(one.parameter)))
+    shown.sort(key=lambda one: alarm.parameters.index(one.parameter))
+    drawn = "".join(_figure(one, alarm) for one in shown)
     return f'<section class="alarm" id="alarm-{place}">{head}<dl>{listed}</dl><div class="views">{drawn}</div>{changes}</section>'
 
 
@@ -127,9 +132,10 @@ def _size(size: float, error: float, kind: str) -> str:
     return f"{size:+.3g} ± {error:.1g}{' a year' if kind == 'slope' else ''}".replace("-", "−")
 
 
-def _figure(series: Series) -> str:
-    caption = f"{series.parameter}: {counted(len(series.values), 'log')}, with 95 % intervals; scatter from log to log {series.scatter:.2g}"
-    return f"<figure>{chart(series)}<figcaption>{escape(caption)}</figcaption></figure>"
+def _figure(series: Series, alarm: Alarm) -> str:
+    caption = f"{series.parameter}: {counted(len(series.values), 'log')}; scatter from log to log {series.scatter:.2g}"
+    keys = " ".join(f'<span class="keys"><span class="key {kind}"></span>{text}</span>' for kind, text in legend(series, alarm).items())
+    return f'<figure>{chart(series, alarm)}<figcaption>{escape(caption)}<br><span class="legend">{keys}</span></figcaption></figure>'
 
 
 def _robots(trend: Trend, robots: list[str]) -> str:

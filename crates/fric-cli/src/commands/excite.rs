@@ -9,7 +9,8 @@ use fric_lab::text::wrapped;
 use fric_log::output::OutputFile;
 use fric_work::excite::{describe, expectations};
 use fric_work::questions::{QuestionError, Request, questions};
-use fric_work::report::{RunSeries, preview};
+use fric_work::report::RunSeries;
+use fric_work::report::preview::{self, Purpose};
 use fric_work::set_points::SetPointTable;
 
 use crate::arguments::{DesignArguments, ExciteArguments};
@@ -37,14 +38,15 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
     let file = OutputFile::create(&arguments.output, &inputs, arguments.force)?;
     let page = arguments.preview.as_ref().map(|path| OutputFile::create(path, &inputs, arguments.force)).transpose()?;
 
-    let (mut excitation, expected) = match asked(&model, &arguments.design)? {
-        Some(questions) => {
+    let (mut excitation, purpose) = match asked(&model, &arguments.design)? {
+        Some((command, questions)) => {
             let duration_s = arguments.design.duration_s.unwrap_or(STANDARD_DURATION_S);
             let work = |progress: &_| design(&model.robot, &options, duration_s, &questions, progress);
             let Experiment { excitation, forecasts } = watched("designing", "steps", work)?.map_err(refused)?;
-            (excitation, expectations(&model.robot.cable_names(), &forecasts))
+            let expectations = expectations(&model.robot.cable_names(), &forecasts);
+            (excitation, Some(Purpose { expectations, command }))
         }
-        None => (Excitation::new(&model.robot, &options).map_err(refused)?, Vec::new()),
+        None => (Excitation::new(&model.robot, &options).map_err(refused)?, None),
     };
     excitation.warning().iter().for_each(|text| warn(text));
     let mut table = SetPointTable::new(file);
@@ -64,15 +66,16 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
     progress::finish(&bar);
     let mut files = vec![Written::new(table.complete()?, describe(&excitation, &series))];
     if let Some(page) = page {
-        let text = preview::page(&model.robot, &excitation, &series, &expected, &output::provenance(&inputs));
+        let text = preview::page(&model.robot, &excitation, &series, purpose.as_ref(), &output::provenance(&inputs));
         files.push(Written::new(page.complete_with(&text)?, "the run, drawn"));
     }
-    let told: String = expected.iter().map(|line| wrapped("  ", line)).collect();
+    let expectations = purpose.into_iter().flat_map(|purpose| purpose.expectations);
+    let told: String = expectations.map(|line| wrapped("  ", &line)).collect();
     output::show_with("", files, &told)
 }
 
-/// Returns the questions of the run, if it is to be designed.
-fn asked(model: &Model, arguments: &DesignArguments) -> Outcome<Option<Vec<Question>>> {
+/// Returns the questions of the run and the command that answers them, if it is to be designed.
+fn asked(model: &Model, arguments: &DesignArguments) -> Outcome<Option<(&'static str, Vec<Question>)>> {
     let DesignArguments { found, separate, determine, cables, noise_n, .. } = arguments;
     let text = found.as_deref().map(read_text).transpose()?;
     let (request, flag) = match (separate, determine, &text) {
@@ -81,8 +84,9 @@ fn asked(model: &Model, arguments: &DesignArguments) -> Outcome<Option<Vec<Quest
         (_, _, Some(text)) => (Request::Found(text), "--for"),
         _ => return Ok(None),
     };
+    let command = request.command();
     match questions(&model.robot, request, cables.as_deref(), *noise_n) {
-        Ok(questions) => Ok(Some(questions)),
+        Ok(questions) => Ok(Some((command, questions))),
         Err(QuestionError::Names(problem)) => Err(Failure::usage(format!("{flag}: {problem}"))),
         Err(error) => Err(Failure::new(error)
             .in_file(found.as_deref().unwrap_or(Path::new(flag)))

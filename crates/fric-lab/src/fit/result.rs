@@ -226,6 +226,13 @@ impl FitResult {
         summary::describe(self)
     }
 
+    /// Returns header and rows of a table of the samples that were used and left out, the evaluations and how the search ended; one row if it is the same
+    /// for all cables.
+    #[must_use]
+    pub fn samples(&self) -> (Vec<&'static str>, Vec<Vec<String>>) {
+        summary::samples(self)
+    }
+
     /// Checks that samples were used, and that they determine at least one parameter. A file with the values that are kept, or that ran to their bounds, would
     /// be no result.
     ///

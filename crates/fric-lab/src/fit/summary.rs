@@ -30,7 +30,8 @@ pub(crate) fn describe(result: &FitResult) -> String {
     }
     text += &log_table(result.cables.iter().map(|cable| (cable.name.as_str(), cable.per_log.as_slice())));
     text += "\nsamples\n\n";
-    text += &sample_table(result);
+    let (header, rows) = samples(result);
+    text += &table(&header, 1, &rows);
     text += &recording_lines(result.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
     if let Some(wrench) = &result.wrench {
         text += "\n";
@@ -260,11 +261,11 @@ pub(crate) fn log_table<'a>(cables: impl Iterator<Item = (&'a str, &'a [LogValue
     format!("\n{}\n{}", wrapped("", &title), table(&["cable", "log", &format!("{parameter}\n[N]"), "±"], 2, &rows))
 }
 
-/// Returns the table of the training samples; one row if it is the same for all cables.
-fn sample_table(result: &FitResult) -> String {
+/// Returns header and rows of the table of the training samples; one row if it is the same for all cables.
+pub(super) fn samples(result: &FitResult) -> (Vec<&'static str>, Vec<Vec<String>>) {
     type Count = fn(&FitCableResult) -> usize;
     let no_reference = if result.reference == "forces" { "no reference" } else { "no wrench" };
-    let all: [(&str, Count); 6] = [
+    let all: [(&'static str, Count); 6] = [
         ("used", |cable| cable.samples),
         ("flagged", |cable| cable.left_out.flagged),
         (no_reference, |cable| cable.left_out.without_reference),
@@ -272,7 +273,7 @@ fn sample_table(result: &FitResult) -> String {
         ("outliers", |cable| cable.left_out.outliers),
         ("evaluations", |cable| cable.evaluations),
     ];
-    let counts: Vec<(&str, Count)> =
+    let counts: Vec<(&'static str, Count)> =
         all.into_iter().filter(|(_, count)| result.cables.iter().any(|cable| count(cable) > 0)).collect();
     let mut header = vec!["cable"];
     header.extend(counts.iter().map(|(name, _)| *name));
@@ -285,8 +286,7 @@ fn sample_table(result: &FitResult) -> String {
     let is_same = cells.len() > 1 && cells.windows(2).all(|pair| pair.first() == pair.last());
     let names = result.cables.iter().map(|cable| if is_same { "all" } else { cable.name.as_str() });
     let rows = names.zip(cells).map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells).collect());
-    let rows: Vec<Vec<String>> = rows.take(if is_same { 1 } else { usize::MAX }).collect();
-    table(&header, 1, &rows)
+    (header, rows.take(if is_same { 1 } else { usize::MAX }).collect())
 }
 
 /// Returns what the log cannot determine, and what to record for it.

@@ -7,7 +7,8 @@ use fric_log::output::OutputFile;
 use fric_work::excite::{describe, expectations};
 use fric_work::provenance::Provenance;
 use fric_work::questions::{Request, questions};
-use fric_work::report::{RunSeries, preview};
+use fric_work::report::RunSeries;
+use fric_work::report::preview::{self, Purpose};
 use fric_work::set_points::SetPointTable;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -116,16 +117,17 @@ pub fn excite(
     }
     let inputs: [PathBuf; 0] = [];
     let created = output.map(|path| OutputFile::create(&path, &inputs, force)).transpose()?;
-    let (mut excitation, expected) = match request {
+    let (mut excitation, purpose) = match request {
         Some((asked, request)) => {
+            let command = request.command();
             let questions = questions(&file, request, cables.as_deref(), noise_n);
             let questions = questions.map_err(|error| Fault::config(format!("`{asked}`: {error}")))?;
             let duration_s = duration_s.unwrap_or(STANDARD_DURATION_S);
             let Experiment { excitation, forecasts } =
                 watch.fit(|progress| design(&file, &options, duration_s, &questions, progress))??;
-            (excitation, expectations(&file.cable_names(), &forecasts))
+            (excitation, Some(Purpose { expectations: expectations(&file.cable_names(), &forecasts), command }))
         }
-        None => (py.detach(|| Excitation::new(&file, &options))?, Vec::new()),
+        None => (py.detach(|| Excitation::new(&file, &options))?, None),
     };
     log::warn(py, excitation.warning().as_slice())?;
     let mut table = created.map(SetPointTable::new);
@@ -157,7 +159,8 @@ pub fn excite(
     }
     let text = robot.borrow().to_toml()?;
     let provenance = Provenance::of_call("fric.excite", &[], Some((&file.options().name, &text)));
-    let page = preview::page(&file, &excitation, &series, &expected, &provenance);
+    let page = preview::page(&file, &excitation, &series, purpose.as_ref(), &provenance);
+    let expected = purpose.map_or_else(Vec::new, |purpose| purpose.expectations);
     let told: String = expected.iter().flat_map(|line| ["\n  ", line]).collect();
     let summary = format!("{}{told}", describe(&excitation, &series));
     let names = file.cable_names();

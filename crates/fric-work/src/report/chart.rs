@@ -6,6 +6,7 @@ use fric_lab::text::significant;
 use maud::{PreEscaped, html};
 
 use super::series::Extent;
+use super::signed;
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 8.0;
@@ -53,7 +54,7 @@ impl Span {
     /// Returns round values, about `most` of them, with their labels.
     fn ticks(self, is_log: bool, most: f64) -> Vec<(f64, String)> {
         if is_log {
-            decades(self.least, self.greatest, most).into_iter().map(|tick| (tick, significant(tick))).collect()
+            decades(self.least, self.greatest, most).into_iter().map(|tick| (tick, label(tick))).collect()
         } else {
             ticks(self.least, self.greatest, most).map(|tick| (tick, label(tick))).collect()
         }
@@ -115,7 +116,8 @@ impl Chart {
         let every = (steps.greatest / most).ceil().max(1.0) as usize;
         let ticks = edges.iter().enumerate().step_by(every);
         #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let ticks: Vec<(f64, String)> = ticks.map(|(place, edge)| (place as f64, significant(*edge))).collect();
+        let ticks: Vec<(f64, String)> =
+            ticks.map(|(place, edge)| (place as f64, signed(&significant(*edge)))).collect();
         let is_repeated = |place: usize| place > 0 && ticks[place].1 == ticks[place - 1].1;
         let distinct = ticks.iter().enumerate().filter(|(place, _)| !is_repeated(*place));
         chart.draw_x_ticks(distinct.map(|(_, tick)| tick.clone()));
@@ -376,20 +378,28 @@ fn ticks(least: f64, greatest: f64, most: f64) -> impl Iterator<Item = f64> {
     (0..1000).map(move |index| (first + f64::from(index)) * step).take_while(move |tick| *tick <= greatest)
 }
 
-/// Returns powers of ten between two bounds, and 2 and 5 times these if there are few.
+/// Returns powers of ten between two bounds, with 2 and 5 times these where there is room or the powers alone are fewer than two; round steps in a range
+/// that holds fewer than two of all these.
 fn decades(least: f64, greatest: f64, most: f64) -> Vec<f64> {
     #[expect(clippy::cast_possible_truncation, reason = "exponents of ten")]
     let (from, to) = (least.log10().floor() as i32, greatest.log10().ceil() as i32);
-    let factors: &[f64] = if f64::from(to - from) * 3.0 <= most { &[1.0, 2.0, 5.0] } else { &[1.0] };
-    let all = (from..=to).flat_map(|exponent| factors.iter().map(move |factor| factor * 10.0_f64.powi(exponent)));
-    all.filter(|tick| (least..=greatest).contains(tick)).collect()
+    let inside = |factors: &[f64]| -> Vec<f64> {
+        let all = (from..=to).flat_map(|exponent| factors.iter().map(move |factor| factor * 10.0_f64.powi(exponent)));
+        all.filter(|tick| (least..=greatest).contains(tick)).collect()
+    };
+    let (powers, all) = (inside(&[1.0]), inside(&[1.0, 2.0, 5.0]));
+    match all.len() {
+        0 | 1 => ticks(least, greatest, most).collect(),
+        _ if count_of(&all) <= most || powers.len() < 2 => all,
+        _ => powers,
+    }
 }
 
 /// Formats a tick without the rounding noise of binary fractions.
 fn label(tick: f64) -> String {
-    let text = format!("{tick:.6}");
+    let text = format!("{tick:.9}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    if text == "-0" { "0".to_owned() } else { signed(text) }
 }
 
 #[cfg(test)]
@@ -398,8 +408,16 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_inside() {
-        assert_eq!(ticks(-0.93, 1.07, 5.0).map(label).collect::<Vec<_>>(), ["-0.5", "0", "0.5", "1"]);
+        assert_eq!(ticks(-0.93, 1.07, 5.0).map(label).collect::<Vec<_>>(), ["−0.5", "0", "0.5", "1"]);
         assert_eq!(ticks(0.0, 51.5, 10.0).map(label).collect::<Vec<_>>(), ["0", "10", "20", "30", "40", "50"]);
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_round_and_at_least_two() {
+        let all = |least, greatest, most| decades(least, greatest, most).into_iter().map(label).collect::<Vec<_>>();
+        assert_eq!(all(0.00023, 0.0031, 5.0), ["0.0005", "0.001", "0.002"]);
+        assert_eq!(all(0.9, 1100.0, 5.0), ["1", "10", "100", "1000"]);
+        assert_eq!(all(0.00041, 0.00062, 5.0), ["0.00045", "0.0005", "0.00055", "0.0006"]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The page of `replay --report`: errors as tables and over time, friction over its conditions, forces and wrench.
 
 use fric_lab::errors::{WrenchError, WrenchResult};
+use fric_lab::text::duration;
 use maud::{Markup, html};
 
 use super::friction::{CableFriction, Friction};
@@ -31,8 +32,8 @@ pub fn page(result: &ReplayResult, series: &Series, provenance: &Provenance) -> 
         }
         @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
         p.soft {
-            (result.cycle.count) " cycles; one takes " (result.cycle.median_ns) " ns (median), "
-            (result.cycle.p999_ns) " ns (99.9 %), " (result.cycle.max_ns) " ns (longest)."
+            (result.cycle.count) " cycles; one takes " (duration(result.cycle.median_ns)) " (median), "
+            (duration(result.cycle.p999_ns)) " (99.9 %), " (duration(result.cycle.max_ns)) " (longest)."
         }
         @for (index, (cable, deviation)) in result.cables.iter().zip(deviations).enumerate() {
             section data-cable=(index) {
@@ -48,7 +49,8 @@ pub fn page(result: &ReplayResult, series: &Series, provenance: &Provenance) -> 
         (wrench(&mut plots, series))
     };
     let title = format!("{}: replay, forces at the platform", result.robot);
-    Page { title, verdict: result.verdict(), content, plots, cables: names, provenance }.into_html()
+    Page { title, verdict: result.verdict(), content, plots, cables: names, source: provenance.logs(), provenance }
+        .into_html()
 }
 
 /// Returns the errors as a table.
@@ -130,6 +132,7 @@ fn deviations(series: &Series, count: usize) -> Vec<Option<Plot>> {
         let mut plot = Plot::new("Error of the force at the platform", Axis::TIME, Axis::new("error", "N"));
         plot.traces = std::iter::once(before).chain(after).collect();
         plot.looks = series.flagged_s(cable).to_vec();
+        plot.looks_name = "flagged samples";
         Some(plot)
     };
     let mut plots: Vec<Option<Plot>> = (0..count).map(of_cable).collect();
@@ -147,7 +150,7 @@ fn frictions(plots: &mut Plots, friction: &CableFriction) -> Markup {
             .half();
     let spread = Values::Spread(pick(|bin| bin.measured.mean()), pick(|bin| bin.measured.deviation()));
     if speeds.iter().any(|(_, bin)| bin.measured.mean().is_finite()) {
-        over_speed.traces.push(Trace::new("measured ± standard deviation", "before", spread));
+        over_speed.traces.push(Trace::new("measured ± standard deviation", "text", spread));
     }
     over_speed
         .traces

@@ -4,9 +4,9 @@ use fric_lab::fit::result::{FitCableResult, FitResult, LogValues};
 use fric_lab::text::plain;
 use maud::{Markup, html};
 
-use super::Page;
 use super::errors::wrench_table;
 use super::plot::Plots;
+use super::{Page, signed};
 use crate::fit_report::{Correlation, correlations, value_text};
 use crate::provenance::Provenance;
 use crate::verdict::{self, left_in_words};
@@ -17,10 +17,11 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &P
     let content = html! {
         p.soft { "Fitted to " (reference_in_words(result.reference)) ". ± is one standard error." }
         (errors(result))
+        @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
+        (samples(result))
         @for (cable, fit) in result.cables.iter().zip(fits) {
             section {
                 h2 { (cable.name) }
-                p.soft { (cable.samples) " samples, " (cable.evaluations) " evaluations: " (cable.termination) "." }
                 @if !cable.faults.is_empty() {
                     h3 { "Faults of the recording" }
                     ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
@@ -28,15 +29,26 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &P
                 (values(std::slice::from_ref(cable)))
                 (log_values(&cable.per_log))
                 @for Correlation { first, second, value } in correlations(fit) {
-                    p.soft { "Correlation of " (first) " and " (second) ": " (format!("{value:.3}")) }
+                    p.soft { "Correlation of " (first) " and " (second) ": " (signed(&format!("{value:.3}"))) }
                 }
             }
         }
-        @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
     };
     let title = format!("{}: friction fitted", result.robot);
     let (verdict, plots) = (verdict::of_fit(result), Plots::default());
-    Page { title, verdict, content, plots, cables: Vec::new(), provenance }.into_html()
+    Page { title, verdict, content, plots, cables: Vec::new(), source: provenance.logs(), provenance }.into_html()
+}
+
+/// Returns the samples that were used and left out, and how the search ended.
+fn samples(result: &FitResult) -> Markup {
+    let (header, rows) = result.samples();
+    html! {
+        table {
+            tr { @for head in header { th scope="col" { (head) } } }
+            @for row in rows { tr { @for cell in row { td { (cell) } } } }
+        }
+        p.soft { "Samples of the fit, and those that were left out." }
+    }
 }
 
 /// Returns the values as a table.
@@ -56,11 +68,11 @@ fn reference_in_words(reference: &str) -> &'static str {
 fn values(cables: &[FitCableResult]) -> Markup {
     html! {
         table {
-            tr { th { "cable" } th { "parameter" } th { "value" } th { "±" } th.words { "" } }
+            tr { th { "cable" } th.words { "parameter" } th { "value" } th { "±" } th.words { "" } }
             @for cable in cables {
                 @for (name, value) in &cable.parameters.0 {
                     tr {
-                        td { (cable.name) } td { (name) } td { (value_text(*value, cable.standard_errors.get(name))) }
+                        td { (cable.name) } td.words { (name) } td { (signed(&value_text(*value, cable.standard_errors.get(name)))) }
                         td { (cable.standard_errors.get(name).map_or_else(|| "–".to_owned(), plain)) }
                         td.words { (remark(cable, name)) }
                     }
@@ -82,7 +94,7 @@ pub(crate) fn log_values(logs: &[LogValues]) -> Markup {
                     @for (name, value) in &log.parameters.0 {
                         tr {
                             td.words { (log.log) } td.words { (name) }
-                            td { (value_text(*value, log.standard_errors.get(name))) }
+                            td { (signed(&value_text(*value, log.standard_errors.get(name)))) }
                             td { (log.standard_errors.get(name).map_or_else(|| "–".to_owned(), plain)) }
                         }
                     }
@@ -117,12 +129,12 @@ fn errors(result: &FitResult) -> Markup {
         @if result.cables.iter().any(|cable| cable.before.is_some()) {
             table {
                 tr {
-                    th scope="col" { "cable" } th scope="col" { "samples" } th scope="col" { "rms before [N]" } th scope="col" { "after [N]" }
+                    th scope="col" { "cable" } th scope="col" { "rms before [N]" } th scope="col" { "after [N]" }
                     th scope="col" { "left" }
                 }
                 @for cable in &result.cables {
                     tr {
-                        td { (cable.name) } td { (cable.samples) }
+                        td { (cable.name) }
                         td { (super::number(cable.before.map(|error| error.rms_n))) }
                         td { (super::number(cable.after.map(|error| error.rms_n))) }
                         td { (left(cable).map_or_else(|| "–".to_owned(), left_in_words)) }

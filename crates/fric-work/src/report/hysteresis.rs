@@ -1,11 +1,13 @@
 //! The page of a hysteresis: its width along and about each axis, and the underlying loops.
 
 use fric_lab::hysteresis::{HysteresisLoop, HysteresisResult, WidthResult};
+use fric_lab::text::plain;
 use maud::{Markup, html};
 
 use super::Page;
 use super::plot::{Axis, Plot, Plots, Trace, Values};
 use super::series::Extent;
+use crate::fit_report::value_text;
 use crate::provenance::Provenance;
 use crate::verdict::{self, left_in_words};
 
@@ -24,7 +26,16 @@ pub fn page(result: &HysteresisResult, loops: &[HysteresisLoop], provenance: &Pr
         }
     };
     let title = format!("{}: hysteresis of the wrench", result.robot);
-    Page { title, verdict: verdict::of_hysteresis(result), content, plots, cables: Vec::new(), provenance }.into_html()
+    Page {
+        title,
+        verdict: verdict::of_hysteresis(result),
+        content,
+        plots,
+        cables: Vec::new(),
+        source: provenance.logs(),
+        provenance,
+    }
+    .into_html()
 }
 
 /// Returns the widths as a table.
@@ -57,8 +68,10 @@ fn widths(result: &HysteresisResult) -> Markup {
 
 fn width(width: Option<&WidthResult>, unit: &str) -> String {
     let Some(WidthResult { width, standard_error }) = width else { return "–".to_owned() };
-    let error = standard_error.map_or_else(String::new, |error| format!(" ± {error:.4}"));
-    format!("{width:.4}{error} {unit}")
+    match standard_error.filter(|error| *error > 0.0) {
+        Some(error) => format!("{} ± {} {unit}", value_text(*width, Some(error)), plain(error)),
+        None => format!("{width:.4} {unit}"),
+    }
 }
 
 /// Returns the plots, each loop around its own mean, so that widths can be compared among forces and among torques.

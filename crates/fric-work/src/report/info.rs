@@ -55,12 +55,12 @@ pub fn page(overview: &Overview<'_>, provenance: &Provenance) -> String {
         @if !overview.steps.is_empty() {
             h2 { "What the log allows" }
             table {
-                thead { tr { th scope="col" { "step" } th scope="col" { "possible" } th.words scope="col" { "remarks" } } }
+                thead { tr { th scope="col" { "step" } th.words scope="col" { "possible" } th.words scope="col" { "remarks" } } }
                 tbody {
                     @for step in &overview.steps {
                         tr {
                             th scope="row" { (step.name) }
-                            td { @if step.is_possible { "yes" } @else { "no" } }
+                            td.words { @if step.is_possible { "yes" } @else { "no" } }
                             td.words { (step.remarks.join("; ")) }
                         }
                     }
@@ -70,7 +70,16 @@ pub fn page(overview: &Overview<'_>, provenance: &Provenance) -> String {
         @if let Some(series) = &overview.series { (signals(&mut plots, series, &overview.cables)) }
     };
     let title = format!("{}what is in the log", overview.model.map_or_else(String::new, |model| format!("{model}: ")));
-    Page { title, verdict: verdict(overview), content, plots, cables: overview.cables.clone(), provenance }.into_html()
+    Page {
+        title,
+        verdict: verdict(overview),
+        content,
+        plots,
+        cables: overview.cables.clone(),
+        source: provenance.logs(),
+        provenance,
+    }
+    .into_html()
 }
 
 fn verdict(overview: &Overview<'_>) -> Verdict {
@@ -102,20 +111,38 @@ fn steps(steps: &[&InfoStep]) -> String {
 }
 
 fn listed(table: &InfoTable) -> Markup {
+    // A column is of words unless each of its cells is empty or begins with a number.
+    let is_number = |cell: &String| {
+        cell.is_empty()
+            || cell.starts_with('–')
+            || cell.starts_with(|letter: char| letter.is_ascii_digit() || letter == '-')
+    };
+    let words = |column: usize| {
+        let is_words = table.rows.iter().filter_map(|row| row.get(column)).any(|cell| !is_number(cell));
+        is_words.then_some("words")
+    };
     html! {
         h2 { (table.title) }
         table {
-            thead { tr { @for head in &table.heads { th scope="col" { (head) } } } }
+            thead { tr { @for (place, head) in table.heads.iter().enumerate() { th scope="col" class=[words(place)] { (head) } } } }
             tbody {
                 @for row in &table.rows {
                     tr {
                         @for (place, cell) in row.iter().enumerate() {
-                            @if place == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
+                            @if place == 0 { th scope="row" { (cell) } } @else { td class=[words(place)] { (breakable(cell)) } }
                         }
                     }
                 }
             }
         }
+    }
+}
+
+/// Returns a text that may break after the last slash of a path.
+fn breakable(text: &str) -> Markup {
+    match text.rsplit_once('/') {
+        Some((path, name)) if !path.is_empty() => html! { (path) "/" wbr; (name) },
+        _ => html! { (text) },
     }
 }
 

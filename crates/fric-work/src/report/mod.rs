@@ -35,6 +35,11 @@ fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"))
 }
 
+/// Returns a number with the sign of typography for a minus.
+fn signed(number: &str) -> String {
+    number.replace('-', "−")
+}
+
 /// A page: the verdict in a sentence, what to do, then the evidence.
 struct Page<'a> {
     /// Title of the page, in a few words.
@@ -44,12 +49,15 @@ struct Page<'a> {
     plots: Plots,
     /// Names of the cables that can be hidden.
     cables: Vec<&'a str>,
+    /// Names of the files that the page is about.
+    source: String,
     provenance: &'a Provenance,
 }
 
 impl Page<'_> {
     fn into_html(self) -> String {
-        let Self { title, verdict: Verdict { tone, sentence, todo }, content, plots, cables, provenance } = self;
+        let Self { title, verdict: Verdict { tone, sentence, todo }, content, plots, cables, source, provenance } =
+            self;
         let tone = match tone {
             Tone::Well => "well",
             Tone::Mixed => "mixed",
@@ -68,7 +76,7 @@ impl Page<'_> {
                 body {
                     main {
                         h1 class=(tone) { (sentence) }
-                        p.about { (title) " · " (provenance.logs()) }
+                        p.about { (title) " · " (source) }
                         @if !todo.is_empty() {
                             div.todo { h2 { "What to do" } ul { @for sentence in &todo { li { (sentence) } } } }
                         }

@@ -61,15 +61,25 @@
     const times = xs[plot.xs];
     if (times.length) whole[1] = Math.max(whole[1], times[times.length - 1]);
   }
+  // Zooming in ends at a few samples.
+  const SHORTEST_SAMPLES = 4;
+  const intervals = timed.map((plot) => xs[plot.xs].length - 1).filter((count) => count > 0);
+  const shortest = SHORTEST_SAMPLES * whole[1] / Math.max(SHORTEST_SAMPLES, ...intervals);
   let view = whole.slice();
   const shut = { cables: new Set(), roles: new Set() };
   const live = [];
   const byId = new Map();
-  const hiddenHere = (shown, trace) =>
-    shown.shut.has(trace) || shut.roles.has(trace.role) || (trace.cable !== null && shut.cables.has(trace.cable));
+  const hiddenByBar = (trace) => shut.roles.has(trace.role) || (trace.cable !== null && shut.cables.has(trace.cable));
+  const hiddenHere = (shown, trace) => shown.shut.has(trace) || hiddenByBar(trace);
+  function tellLegend(shown) {
+    for (const [trace, key] of shown.keys) {
+      key.setAttribute("aria-pressed", String(!hiddenHere(shown, trace)));
+      key.disabled = hiddenByBar(trace);
+    }
+  }
 
   function setView(from, to) {
-    const length = Math.min(Math.max(to - from, 1e-6 * (whole[1] || 1)), whole[1] - whole[0]);
+    const length = Math.min(Math.max(to - from, shortest), whole[1] - whole[0]);
     const start = Math.min(Math.max(0.5 * (from + to - length), whole[0]), whole[1] - length);
     view = [start, start + length];
     tell();
@@ -145,30 +155,36 @@
   }
 
   function text(plot, value) {
-    return value === null || value === undefined || value !== value ? "–" : Number(value.toFixed(plot.digits) * 1).toFixed(plot.digits).replace(/^-(0\.?0*)$/, "$1");
+    return value === null || value === undefined || value !== value ? "–" : Number(value.toFixed(plot.digits) * 1).toFixed(plot.digits).replace(/^-(0\.?0*)$/, "$1").replace("-", "−");
   }
   const withUnit = (axis, number) => (axis.unit ? `${number} ${axis.unit}` : number);
-  const shortX = (plot, value) => (plot.x.time ? value.toFixed(view[1] - view[0] < 2 ? 4 : 3) : String(Number(value.toPrecision(4))));
+  const shortX = (plot, value) => (plot.x.time ? value.toFixed(view[1] - view[0] < 2 ? 4 : 3) : String(Number(value.toPrecision(4))).replace("-", "−"));
 
+  // Values lie over the chart, on the side where the mouse is not, so that they move nothing.
   function readout(shown) {
-    const { plot, chart } = shown;
+    const { plot, chart, box } = shown;
     const at = chart.cursor.idx;
-    shown.place.textContent = at === null || at === undefined ? "" : `${plot.x.name} ${withUnit(plot.x, shortX(plot, chart.data[0][at]))}`;
+    const isOver = at !== null && at !== undefined && chart.cursor.left >= 0;
+    box.hidden = !isOver;
+    if (!isOver) return;
+    shown.place.textContent = `${plot.x.name} ${withUnit(plot.x, shortX(plot, chart.data[0][at]))}`;
     let column = 1;
     for (const [trace, output] of shown.outputs) {
       const count = trace.levels[0].length;
-      if (at === null || at === undefined) {
-        output.textContent = "";
-      } else {
-        const values = chart.data.slice(column, column + count).map((one) => one[at]);
-        let words;
-        if (trace.half) words = values[0] === null ? "–" : `${text(plot, values[0])} ± ${text(plot, trace.half[at])}`;
-        else if (count === 1 || text(plot, values[0]) === text(plot, values[1])) words = text(plot, values[0]);
-        else words = `${text(plot, values[0])} … ${text(plot, values[1])}`;
-        output.textContent = ` ${withUnit(plot.y, words)}`;
-      }
+      const values = chart.data.slice(column, column + count).map((one) => one[at]);
       column += count;
+      let words;
+      if (trace.half) words = values[0] === null ? "–" : `${text(plot, values[0])} ± ${text(plot, trace.half[at])}`;
+      else if (count === 1 || text(plot, values[0]) === text(plot, values[1])) words = text(plot, values[0]);
+      else words = `${text(plot, values[0])} … ${text(plot, values[1])}`;
+      output.textContent = withUnit(plot.y, words);
+      output.parentElement.hidden = hiddenHere(shown, trace);
     }
+    const over = chart.over;
+    const isLeft = chart.cursor.left > 0.5 * over.clientWidth;
+    box.style.top = `${over.offsetTop + 4}px`;
+    box.style.left = isLeft ? `${over.offsetLeft + 4}px` : "";
+    box.style.right = isLeft ? "" : `${shown.area.clientWidth - over.offsetLeft - over.clientWidth + 4}px`;
   }
 
   function marks(chart, plot) {
@@ -207,6 +223,22 @@
     ctx.restore();
   }
 
+  // Powers of ten, with 2 and 5 times these where there is room; round steps in a range so short that it holds fewer than two of them.
+  function decades(least, greatest, most) {
+    const exponents = [];
+    for (let one = Math.floor(Math.log10(least)); one <= Math.ceil(Math.log10(greatest)); one++) exponents.push(one);
+    const ticks = (factors) => exponents.flatMap((one) => factors.map((factor) => Number(`${factor}e${one}`))).filter((tick) => tick >= least && tick <= greatest);
+    const all = ticks([1, 2, 5]);
+    if (all.length >= 2) return all.length <= most || ticks([1]).length < 2 ? all : ticks([1]);
+    const raw = (greatest - least) / Math.max(most, 2);
+    const power = 10 ** Math.floor(Math.log10(raw));
+    const step = [1, 2, 5, 10].map((factor) => factor * power).find((one) => one >= raw);
+    const even = [];
+    for (let place = Math.ceil(least / step); place * step <= greatest; place++) even.push(place * step);
+    return even;
+  }
+
+  const heightOf = (plot) => plot.height + 30;
   function options(shown) {
     const { plot } = shown;
     const series = [{}];
@@ -226,19 +258,20 @@
         series.push(solid);
       }
     }
-    const axis = (of) => ({
-      stroke: () => color("soft"), font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 20, size: of === plot.x ? 32 : 56,
+    const axis = (of, most) => ({
+      stroke: () => color("soft"), font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 20, size: of === plot.x ? 32 : of.log ? 66 : 56,
       label: `${of.name}${of.unit ? ` [${of.unit}]` : ""}${of.log ? ", logarithmic" : ""}`,
-      values: (chart, ticks) => ticks.map((tick) => (tick === null ? "" : String(Number(tick.toPrecision(6))))),
+      values: (chart, ticks) => ticks.map((tick) => String(Number(tick.toPrecision(6))).replace("-", "−")),
+      ...(of.log ? { splits: (chart, place, least, greatest) => decades(least, greatest, most()), filter: (chart, ticks) => ticks } : {}),
       grid: { stroke: () => color("line"), width: 1 }, ticks: { stroke: () => color("line"), width: 1, size: 4 },
     });
     return {
-      width: shown.width(), height: plot.height + 30, series, bands, legend: { show: false },
+      width: shown.width(), height: heightOf(plot), series, bands, legend: { show: false },
       scales: {
         x: { time: false, distr: plot.x.log ? 3 : 1, range: plot.x.time ? () => view.slice() : undefined },
         y: { distr: plot.y.log ? 3 : 1, range: (chart, least, greatest) => heights(plot, chart, least, greatest) },
       },
-      axes: [axis(plot.x), axis(plot.y)],
+      axes: [axis(plot.x, () => shown.width() / 56), axis(plot.y, () => plot.height / 34)],
       cursor: {
         y: false, drag: { x: true, y: false, setScale: !plot.x.time },
         sync: plot.x.time ? { key: "time", setSeries: false, filters: { pub: (kind) => kind === "mousemove" || kind === "mouseleave" } } : undefined,
@@ -304,7 +337,7 @@
     shown.stale = false;
     const data = columns(shown);
     if (!shown.chart) {
-      shown.chart = new uPlot(options(shown), data, shown.place.parentElement.nextElementSibling);
+      shown.chart = new uPlot(options(shown), data, shown.area);
       const over = shown.chart.over;
       over.addEventListener("wheel", (event) => {
         if (!shown.plot.x.time || !(event.ctrlKey || event.metaKey || event.shiftKey)) return;
@@ -326,33 +359,43 @@
     if (!shown.plot.x.time) shown.chart.redraw(false);
   }
 
+  const swatch = (trace) => element("span", { class: `key${trace.dashed ? " dashed" : ""}`, style: `background: var(--${trace.color})` });
+  // A long list of values stands in columns.
+  const MOST_ROWS = 9;
   function show(plot) {
     const figure = document.getElementById(plot.id);
     const place = element("output", { class: "at" });
-    const row = element("div", { class: "readout" });
-    const shown = { plot, figure, place, shut: new Set(), outputs: new Map(), stale: true, depth: prepare(plot) };
+    const box = element("div", { class: "readout", hidden: "" }, place);
+    const legend = element("div", { class: "switches", role: "group", "aria-label": "Lines of the chart" });
+    const area = element("div", { class: "area", role: "group", "aria-label": plot.caption }, box);
+    const shown = { plot, figure, place, box, area, shut: new Set(), keys: new Map(), outputs: new Map(), stale: true, depth: prepare(plot) };
     for (const trace of plot.traces) {
-      const output = element("output");
-      const key = element("span", { class: `key${trace.dashed ? " dashed" : ""}`, style: `background: var(--${trace.color})` });
-      const button = element("button", { type: "button", "aria-pressed": "true" }, key, trace.name, output);
+      const button = element("button", { type: "button", "aria-pressed": "true" }, swatch(trace), trace.name);
       button.addEventListener("click", () => {
         if (!shown.shut.delete(trace)) shown.shut.add(trace);
-        button.setAttribute("aria-pressed", String(!shown.shut.has(trace)));
+        tellLegend(shown);
         draw(shown);
       });
+      shown.keys.set(trace, button);
+      legend.append(button);
+      const output = element("output");
       shown.outputs.set(trace, output);
-      row.append(button);
+      box.append(element("div", {}, swatch(trace), trace.name, " ", output));
     }
-    row.append(place);
-    const area = element("div", { class: "area", tabindex: "0", role: "group", "aria-label": plot.caption });
+    box.style.gridTemplateRows = `repeat(${Math.min(plot.traces.length, MOST_ROWS) + 1}, auto)`;
+    // Charts that are not drawn yet take their height too.
+    area.style.minHeight = `${heightOf(plot)}px`;
     shown.width = () => Math.max(Math.floor(area.clientWidth), 240);
-    area.addEventListener("keydown", (event) => {
-      const act = { ArrowLeft: () => pan(-0.2), ArrowRight: () => pan(0.2), "+": () => zoom(0.5), "-": () => zoom(2), 0: () => setView(...whole) }[event.key];
-      if (!act || !plot.x.time) return;
-      event.preventDefault();
-      act();
-    });
-    figure.querySelector(".chart").before(element("div", { class: "live" }, row, area));
+    if (plot.x.time) {
+      area.tabIndex = 0;
+      area.addEventListener("keydown", (event) => {
+        const act = { ArrowLeft: () => pan(-0.2), ArrowRight: () => pan(0.2), "+": () => zoom(0.5), "-": () => zoom(2), 0: () => setView(...whole) }[event.key];
+        if (!act) return;
+        event.preventDefault();
+        act();
+      });
+    }
+    figure.querySelector(".chart").before(element("div", { class: "live" }, legend, area));
     figure.classList.add("is-live");
     live.push(shown);
     byId.set(plot.id, shown);
@@ -377,7 +420,10 @@
     span.textContent = `${view[0].toFixed(digits)} … ${view[1].toFixed(digits)} s`;
   }
   function refresh() {
-    for (const shown of live) shown.stale = true;
+    for (const shown of live) {
+      shown.stale = true;
+      tellLegend(shown);
+    }
     later();
   }
   const button = (label, title, act) => {
@@ -385,6 +431,8 @@
     made.addEventListener("click", act);
     return made;
   };
+  // The first words of a legend, `before` of `before: given model`, name what has the same role in all charts.
+  const roleName = (trace) => trace.name.split(/[:,]/)[0];
   function toggle(label, closed, what, also = () => {}) {
     const made = element("button", { type: "button", "aria-pressed": "true", "data-toggle": label }, label);
     made.addEventListener("click", () => {
@@ -404,18 +452,28 @@
         button("+", "Zoom in", () => zoom(0.5)), button("−", "Zoom out", () => zoom(2)), button("all", "The whole log", () => setView(...whole)), span, fit));
     }
     const names = new Map();
-    for (const trace of page.plots.flatMap((plot) => plot.traces)) if (/^(before|after)$/.test(trace.role) && !names.has(trace.role)) names.set(trace.role, trace.name);
+    for (const trace of page.plots.flatMap((plot) => plot.traces)) if (/^(before|after)$/.test(trace.role) && !names.has(trace.role)) names.set(trace.role, roleName(trace));
     if (names.size > 1) {
-      groups.push(element("span", { class: "group", role: "group", "aria-label": "Models" }, ...[...names.keys()].map((role) => toggle(role, shut.roles, role))));
+      groups.push(element("span", { class: "group", role: "group", "aria-label": "Models" }, ...[...names].map(([role, name]) => toggle(name, shut.roles, role))));
     }
     if (page.cables.length > 1) {
       const ofCable = (cable) => (isShut) => document.querySelectorAll(`[data-cable="${cable}"]`).forEach((part) => { part.hidden = isShut; });
       groups.push(element("span", { class: "group cables", role: "group", "aria-label": "Cables" }, ...page.cables.map((name, cable) => toggle(name, shut.cables, cable, ofCable(cable)))));
     }
-    if (!groups.length) return;
-    const tools = element("div", { class: "tools", role: "toolbar", "aria-label": "Charts" }, ...groups);
-    const hint = element("p", { class: "soft hint" }, "Charts: drag to zoom, shift and drag to move, double click for all; with ctrl the wheel zooms, with the keyboard ← → + − 0.");
-    (document.querySelector("nav") || document.querySelector("[data-evidence]")).after(tools, hint);
+    const nav = document.querySelector("nav");
+    const bars = element("div", { class: "bars" });
+    (nav || document.querySelector("[data-evidence]")).after(bars);
+    if (nav) bars.append(nav);
+    if (groups.length) bars.append(element("div", { class: "tools", role: "toolbar", "aria-label": "Charts" }, ...groups));
+    const inTime = "Those over time also: shift and drag to move; with ctrl the wheel zooms, with the keyboard ← → + − 0.";
+    bars.after(element("p", { class: "soft hint" }, `Charts: drag to zoom, double click for all.${timed.length ? ` ${inTime}` : ""}`));
+    // What a link leads to stands below the bars.
+    const measure = () => {
+      const isSticky = getComputedStyle(bars).position === "sticky";
+      root.style.setProperty("--bars", `${isSticky ? bars.offsetHeight : 0}px`);
+    };
+    new ResizeObserver(measure).observe(bars);
+    measure();
     tell();
   }
 

@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use super::chart::{Chart, Span};
 use super::series::Extent;
+use super::signed;
 
 /// Maximum number of points of a line in SVG.
 const MOST_POINTS: usize = 480;
@@ -87,6 +88,8 @@ pub struct Plot {
     pub traces: Vec<Trace>,
     /// Ranges of x to look at.
     pub looks: Vec<[f64; 2]>,
+    /// What these ranges are, for the legend.
+    pub looks_name: &'static str,
     /// Ranges of x marked along the bottom.
     pub strips: Vec<[f64; 2]>,
     /// Vertical lines with a text.
@@ -108,6 +111,7 @@ impl Plot {
             digits: 4,
             traces: Vec::new(),
             looks: Vec::new(),
+            looks_name: "where to look",
             strips: Vec::new(),
             uprights: Vec::new(),
             levels: Vec::new(),
@@ -213,13 +217,14 @@ impl Plots {
                 figcaption { (plot.title) span.soft { " " (plot.axes()) } }
                 p.legend {
                     @for trace in &plot.traces {
-                        span.keys {
+                        // The script has switches in place of these.
+                        span.keys.switched {
                             span.key.dashed[trace.is_dashed] style=(format!("background: var(--{})", trace.color)) {}
                             (trace.name)
                         }
                         " "
                     }
-                    @if !plot.looks.is_empty() { span.keys { span.key style="background: var(--flag)" {} "where to look" } " " }
+                    @if !plot.looks.is_empty() { span.keys { span.key style="background: var(--flag)" {} (plot.looks_name) } " " }
                     @if !plot.strips.is_empty() { span.keys { span.key style="background: var(--soft)" {} "along the foot: samples held out" } }
                 }
                 (PreEscaped(drawn(plot, xs, y)))
@@ -370,7 +375,7 @@ fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 fn listed(plot: &Plot, xs: &[f64]) -> Markup {
     let is_time = plot.x.name == Axis::TIME.name;
     let per_row = xs.len().div_ceil(if is_time { 12 } else { MOST_ROWS }).max(1);
-    let shown = |value: f64| if value.is_finite() { number(value, plot.digits) } else { "–".to_owned() };
+    let shown = |value: f64| if value.is_finite() { signed(&number(value, plot.digits)) } else { "–".to_owned() };
     let cells = |trace: &Trace, rows: std::ops::Range<usize>| -> Vec<String> {
         let of = |values: &[f64], pick: fn(f64, f64) -> f64| {
             shown(values.get(rows.clone()).unwrap_or_default().iter().copied().fold(f64::NAN, pick))
@@ -401,7 +406,7 @@ fn listed(plot: &Plot, xs: &[f64]) -> Markup {
             tbody {
                 @for start in (0..xs.len()).step_by(per_row) {
                     tr {
-                        th scope="row" { (significant(xs[start])) }
+                        th scope="row" { (signed(&significant(xs[start]))) }
                         @for cell in plot.traces.iter().flat_map(|trace| cells(trace, start..(start + per_row).min(xs.len()))) { td { (cell) } }
                     }
                 }

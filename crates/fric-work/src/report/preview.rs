@@ -33,23 +33,32 @@ fn over_time(series: &RunSeries, pick: fn(&RunInterval) -> Extent) -> impl Itera
     series.intervals().iter().map(move |interval| (interval.start_s, pick(interval)))
 }
 
-/// Returns the page. `expectations` belong to a designed run, one line each; empty for the identification run.
+/// What a designed run is for.
+#[derive(Debug)]
+pub struct Purpose {
+    /// What it is expected to tell, one line each.
+    pub expectations: Vec<String>,
+    /// The command that its log is for.
+    pub command: &'static str,
+}
+
+/// Returns the page; `purpose` is `None` for the identification run.
 #[must_use]
 pub fn page(
     robot: &RobotFile,
     excitation: &Excitation,
     series: &RunSeries,
-    expectations: &[String],
+    purpose: Option<&Purpose>,
     provenance: &Provenance,
 ) -> String {
-    let kind = if expectations.is_empty() { "identification run" } else { "designed run" };
+    let kind = if purpose.is_some() { "designed run" } else { "identification run" };
     let title = format!("{}: {kind}", robot.options().name);
     let duration_s = excitation.trajectory().duration_s();
     let content = html! {
-        @if !expectations.is_empty() {
+        @if let Some(purpose) = purpose {
             section {
                 h2 { "What the run is expected to tell" }
-                ul { @for line in expectations { li { (line) } } }
+                ul { @for line in &purpose.expectations { li { (line) } } }
             }
         }
         @if let Some(work_box) = excitation.work_box() { (views(robot, excitation, work_box)) }
@@ -81,9 +90,19 @@ pub fn page(
         excitation.total_cycles(),
         robot.options().cycle_s
     );
-    let todo = vec!["Look whether the path is free, then run it and record a log for fric-cli fit.".to_owned()];
+    let command = purpose.map_or("fit", |purpose| purpose.command);
+    let todo = vec![format!("Look whether the path is free, then run it and record a log for fric-cli {command}.")];
     let verdict = Verdict { tone: Tone::Mixed, sentence, todo };
-    Page { title, verdict, content, plots: Plots::default(), cables: Vec::new(), provenance }.into_html()
+    Page {
+        title,
+        verdict,
+        content,
+        plots: Plots::default(),
+        cables: Vec::new(),
+        source: provenance.model(),
+        provenance,
+    }
+    .into_html()
 }
 
 /// Returns plan view and side view.

@@ -207,30 +207,40 @@ pub fn of_fit(result: &FitResult) -> Verdict {
         None => (Tone::Mixed, left),
     };
     let mut todo = Vec::new();
-    for cable in &result.cables {
-        if !cable.undetermined.is_empty() {
-            todo.push(format!(
-                "{}: the log does not determine {}, kept as given; record a run that does (fric-cli excite).",
-                cable.name,
-                listed(&cable.undetermined)
-            ));
-        }
-        if !cable.at_bound.is_empty() {
-            todo.push(format!(
-                "{}: {} is at the end of its range; see what else the model lacks (fric-cli discover).",
-                cable.name,
-                listed(&cable.at_bound)
-            ));
-        }
-        if !cable.faults.is_empty() {
-            todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
-        }
+    for (cables, names) in grouped(result, |cable| &cable.undetermined) {
+        todo.push(format!(
+            "{cables}: the log does not determine {names}, kept as given; record a run that does (fric-cli excite)."
+        ));
+    }
+    for (cables, names) in grouped(result, |cable| &cable.at_bound) {
+        todo.push(format!(
+            "{cables}: {names} is at the end of its range; see what else the model lacks (fric-cli discover)."
+        ));
+    }
+    for cable in result.cables.iter().filter(|cable| !cable.faults.is_empty()) {
+        todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
     }
     if tone != Tone::Well {
         todo.push("See what the model lacks: fric-cli discover with the same log and model.".to_owned());
     }
     todo.push("Replay another log with the fitted file: that judges it, this log taught it.".to_owned());
     Verdict { tone, sentence, todo }
+}
+
+/// Returns the cables with the same parameters, and these, as phrases; cables without any are left out.
+fn grouped(result: &FitResult, pick: fn(&FitCableResult) -> &Vec<String>) -> Vec<(String, String)> {
+    let mut groups: Vec<(&[String], Vec<&str>)> = Vec::new();
+    for cable in result.cables.iter().filter(|cable| !pick(cable).is_empty()) {
+        match groups.iter_mut().find(|(names, _)| *names == pick(cable).as_slice()) {
+            Some((_, cables)) => cables.push(&cable.name),
+            None => groups.push((pick(cable), vec![&cable.name])),
+        }
+    }
+    let in_words = |(names, cables): (&[String], Vec<&str>)| {
+        let is_all = cables.len() > 1 && cables.len() == result.cables.len();
+        (if is_all { "all cables".to_owned() } else { listed(&cables) }, listed(names))
+    };
+    groups.into_iter().map(in_words).collect()
 }
 
 /// Returns a sentence about the cables whose error was a zero more than anything else; `None` without one.

@@ -224,7 +224,7 @@ pub fn fit_table(result: &TendonFitResult) -> String {
 
 /// Returns a page without cables to switch off.
 fn plain(title: String, verdict: Verdict, content: Markup, plots: Plots, provenance: &Provenance) -> String {
-    Page { title, verdict, content, plots, cables: Vec::new(), provenance }.into_html()
+    Page { title, verdict, content, plots, cables: Vec::new(), source: provenance.logs(), provenance }.into_html()
 }
 
 fn warnings(sentences: &[String]) -> Markup {

@@ -71,8 +71,8 @@ pub(super) fn over_condition(cable: &DiscoverCableResult, profile: &Profile) -> 
         figure {
             h3 { "Residual against the " (condition(profile.signal)) }
             p {
-                (key("before", "given model"))
-                @if is_extended { (key("after", "extended model")) }
+                (key("before", "before: given model"))
+                @if is_extended { (key("after", "after: extended model")) }
             }
             p.soft {
                 (if profile.are_even { "Each step is as wide." } else { "Each step holds as many samples." })

@@ -48,7 +48,16 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance:
     };
     let title = format!("{}: what the model lacks", result.robot);
     let names = result.cables.iter().map(|cable| cable.name.as_str()).collect();
-    Page { title, verdict: verdict::of_discovery(result), content, plots, cables: names, provenance }.into_html()
+    Page {
+        title,
+        verdict: verdict::of_discovery(result),
+        content,
+        plots,
+        cables: names,
+        source: provenance.logs(),
+        provenance,
+    }
+    .into_html()
 }
 
 /// Returns the verdicts as a table.
@@ -57,13 +66,32 @@ pub fn table(result: &DiscoverResult) -> String {
     overview(result, |_, name| html! { (name) }).into_string()
 }
 
+/// Returns what the model after is, for legends and headings; `None` where it is the one before.
+fn after_name(found: &CableDiscovery) -> Option<&'static str> {
+    // Samples that do not count are NaN.
+    let differ = |(before, after): (&f64, &f64)| before.to_bits() != after.to_bits();
+    if !found.findings.is_empty() {
+        Some("extended model")
+    } else if !found.residual_before_n.iter().zip(&found.residual_after_n).any(differ) {
+        None
+    } else if found.faults.is_empty() {
+        // By the wrench, other cables have been extended.
+        Some("extended model")
+    } else {
+        Some("recording corrected")
+    }
+}
+
 /// Returns the verdicts; `named` formats a cable's name, possibly as a link.
 fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> Markup {
+    let with_errors = result.cables.iter().any(|cable| cable.before.is_some());
+    let with_shares = result.cables.iter().any(|cable| share_closed(cable).is_some());
     html! {
         table {
             tr {
                 th scope="col" { "cable" } th.words scope="col" { "verdict" } th.words scope="col" { "found" } th scope="col" { "noise [N]" }
-                th scope="col" { "rms before [N]" } th scope="col" { "after [N]" } th scope="col" { "gap closed" }
+                @if with_errors { th scope="col" { "rms before [N]" } th scope="col" { "after [N]" } }
+                @if with_shares { th scope="col" { "gap closed" } }
             }
             @for (place, cable) in result.cables.iter().enumerate() {
                 tr {
@@ -74,19 +102,27 @@ fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> M
                         (cable.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", "))
                     }
                     td { (number(cable.noise_floor_n)) }
-                    td { (number(cable.before.map(|error| error.rms_n))) }
-                    td { (number(cable.after.map(|error| error.rms_n))) }
-                    td {
-                        (cable.gap_closed.filter(|_| !cable.effects.is_empty()).map_or_else(|| "–".to_owned(), percent))
+                    @if with_errors {
+                        td { (number(cable.before.map(|error| error.rms_n))) }
+                        td { (number(cable.after.map(|error| error.rms_n))) }
                     }
+                    @if with_shares { td { (share_closed(cable).map_or_else(|| "–".to_owned(), percent)) } }
                 }
             }
         }
-        p.soft {
-            "Root mean squares over samples that no fit has seen: before, of the given model fitted to the others; after, of \
-             the extended one."
+        @if with_errors {
+            p.soft {
+                "Root mean squares over samples that no fit has seen: before, of the given model fitted to the others; after, of \
+                 the extended one."
+                @if result.cables.iter().any(|cable| !cable.faults.is_empty()) { " A correction of the recording is part of after." }
+            }
         }
     }
+}
+
+/// Returns the share of the gap that the effects close; `None` without an effect.
+fn share_closed(cable: &DiscoverCableResult) -> Option<f64> {
+    cable.gap_closed.filter(|_| !cable.effects.is_empty())
 }
 
 /// Returns the findings for all cables together.
@@ -252,28 +288,38 @@ fn parameters(found: &CableDiscovery) -> Markup {
         found.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
     };
     let shown = Parameter::all().filter(|parameter| found.after.fitted.contains(parameter) || of_finding(parameter));
-    let is_extended = !found.findings.is_empty();
+    let shown: Vec<Parameter> = shown.collect();
+    let after = after_name(found);
     let value = |model: &Model, parameter: &Parameter| {
         let half = model.standard_error(parameter).map(|error| HALF_INTERVAL * error);
         quantity(model.values[parameter.place()], half, parameter.row().unit)
     };
+    // By the wrench, only the covariance of the last model is computed. Where nothing was found, that is the given one.
+    let has_error = |parameter: &Parameter| found.before.standard_error(parameter).is_none_or(f64::is_finite);
+    let given = if after.is_some() { &found.before } else { &found.after };
     html! {
         figure {
             h3 { "Parameters" }
             table {
                 tr {
-                    th { "parameter" } th { "given model" }
-                    @if is_extended { th { "extended model" } }
+                    th { "parameter" } th { "given model, fitted" }
+                    @if let Some(after) = after { th { (after) } }
                 }
-                @for parameter in shown {
+                @for parameter in &shown {
                     tr {
                         td { @if let Some(effect) = parameter.effect() { (effect.to_string()) ": " } (name_of(parameter.row().key)) }
-                        td { @if of_finding(&parameter) { "–" } @else { (value(&found.before, &parameter)) } }
-                        @if is_extended { td { (value(&found.after, &parameter)) } }
+                        td { @if of_finding(parameter) { "–" } @else { (value(given, parameter)) } }
+                        @if after.is_some() { td { (value(&found.after, parameter)) } }
                     }
                 }
             }
-            p.soft { "Fitted, ± 95 %; without ± it is a setting." }
+            p.soft {
+                @if after.is_some() && !shown.iter().all(has_error) {
+                    "Fitted, ± 95 %, which is not computed for the given model; without ± in the other column it is a setting."
+                } @else {
+                    "Fitted, ± 95 %; without ± it is a setting."
+                }
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use fric_lab::discover::result::DiscoverCableResult;
 use fric_lab::discover::{Autocorrelation, CableDiscovery, FrictionPoint, Spectrum, autocorrelation, spectrum};
 use maud::{Markup, html};
 
+use super::after_name;
 use crate::report::plot::{Axis, Plot, Plots, Trace, Values};
 use crate::report::series::Extent;
 
@@ -68,10 +69,10 @@ fn looked_at(cable: &DiscoverCableResult) -> Vec<[f64; 2]> {
 
 pub(super) fn over_time(common: &Common, cable: &DiscoverCableResult, found: &CableDiscovery) -> Plot {
     let mut plot = Plot::new("Residual: model less reference", Axis::TIME, Axis::new("residual", "N"));
-    let band = |name, color, residual_n: &[f64]| Trace::new(name, color, common.band(residual_n));
+    let band = |name: &str, color, residual_n: &[f64]| Trace::new(name, color, common.band(residual_n));
     plot.traces.push(band("before: given model, fitted", "before", &found.residual_before_n));
-    if !cable.effects.is_empty() {
-        plot.traces.push(band("after: extended model", "after", &found.residual_after_n));
+    if let Some(after) = after_name(found) {
+        plot.traces.push(band(&format!("after: {after}"), "after", &found.residual_after_n));
     }
     plot.looks = looked_at(cable);
     plot.strips.clone_from(&cable.held_out_s);
@@ -91,10 +92,14 @@ pub(super) fn curves(plots: &mut Plots, cable: &DiscoverCableResult, found: &Cab
         Plot::new("Friction over speed, positive paying out", Axis::new("speed", "mm/s"), friction).half();
     let measured = Values::Spread(pick(speeds, |point| point.measured_n), pick(speeds, |point| point.deviation_n));
     over_speed.traces.push(Trace::new("measured ± standard deviation", "text", measured));
-    over_speed.traces.push(Trace::new("given model", "before", Values::Line(pick(speeds, |point| point.before_n))));
+    over_speed.traces.push(Trace::new(
+        "before: given model",
+        "before",
+        Values::Line(pick(speeds, |point| point.before_n)),
+    ));
     if is_extended {
         over_speed.traces.push(Trace::new(
-            "extended model",
+            "after: extended model",
             "after",
             Values::Line(pick(speeds, |point| point.after_n)),
         ));
@@ -110,9 +115,9 @@ pub(super) fn curves(plots: &mut Plots, cable: &DiscoverCableResult, found: &Cab
             continue;
         }
         add("measured", "text", |point| point.measured_n);
-        add("given model", "before", |point| point.before_n);
+        add("before", "before", |point| point.before_n);
         if is_extended {
-            add("extended model", "after", |point| point.after_n);
+            add("after", "after", |point| point.after_n);
         }
     }
     let lengths = if out.is_empty() { back } else { out };
@@ -132,12 +137,9 @@ pub(super) fn curves(plots: &mut Plots, cable: &DiscoverCableResult, found: &Cab
 
 /// Plots the spectrum of the residual with the lines found, and its autocorrelation.
 pub(super) fn periodic(plots: &mut Plots, cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
-    let is_extended = !cable.effects.is_empty();
-    let residuals = [
-        ("before: given model", "before", &found.residual_before_n),
-        ("after: extended model", "after", &found.residual_after_n),
-    ];
-    let shown = &residuals[..if is_extended { 2 } else { 1 }];
+    let before = ("before: given model".to_owned(), "before", &found.residual_before_n);
+    let after = after_name(found).map(|after| (format!("after: {after}"), "after", &found.residual_after_n));
+    let shown = std::iter::once(before).chain(after);
     let mut density =
         Plot::new("Spectrum of the residual", Axis::log("frequency", "Hz"), Axis::log("density", "N/√Hz")).half();
     density.digits = 6;
@@ -148,12 +150,12 @@ pub(super) fn periodic(plots: &mut Plots, cable: &DiscoverCableResult, found: &C
         let (frequency_hz, values) = per_octave(&spectrum(&found.times_s, residual_n));
         if !frequency_hz.is_empty() {
             frequencies = frequency_hz;
-            density.traces.push(Trace::new(name, color, Values::Line(values)));
+            density.traces.push(Trace::new(&name, color, Values::Line(values)));
         }
         let Autocorrelation { lag_s, correlation, white } = autocorrelation(&found.times_s, residual_n, LONGEST_LAG_S);
         if lag_s.len() > 1 {
             lags = lag_s;
-            memory.traces.push(Trace::new(name, color, Values::Line(correlation)));
+            memory.traces.push(Trace::new(&name, color, Values::Line(correlation)));
             memory.levels = vec![(white, "95 % of white noise".to_owned()), (-white, String::new())];
         }
     }
