@@ -42,6 +42,7 @@ tools:
 # `cargo fmt` does not see the files of the effects, which a macro names.
 format:
 	$(CARGO) fmt --all --check
+	$(CARGO) fmt --manifest-path fuzz/Cargo.toml --check
 	rustfmt --check crates/*/src/effects/*.rs
 
 lint:

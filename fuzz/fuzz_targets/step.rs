@@ -133,7 +133,7 @@ fn check(input: &CableInput, output: &CableOutput) {
     assert!(numbers.iter().all(|number| number.is_finite()), "{output:?}");
     let known = CableStatus::NAMES.iter().fold(CableStatus::OK, |all, (_, flag)| all | *flag);
     assert!(known.contains(output.status));
-    let no_force = !(input.sensor_force_n.abs() <= 1e9);
+    let no_force = input.sensor_force_n.is_nan() || input.sensor_force_n.abs() > 1e9;
     assert_eq!(output.status.contains(CableStatus::SENSOR_NOT_FINITE), no_force, "{input:?} {output:?}");
     let no_motion = !(input.length_m.abs() <= 1e6 && input.speed_m_per_s.abs() <= 1e6);
     assert_eq!(output.status.contains(CableStatus::MOTION_NOT_FINITE), no_motion, "{input:?} {output:?}");

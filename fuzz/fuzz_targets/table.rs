@@ -4,8 +4,8 @@
 use std::fs;
 use std::sync::LazyLock;
 
-use fric_tendon_lab::{Run, columns};
 use fric_log::table::NumberTable;
+use fric_tendon_lab::{Run, columns};
 use libfuzzer_sys::fuzz_target;
 use tempfile::TempDir;
 
