@@ -30,6 +30,22 @@ fn a_split_recording_replays_like_the_whole() {
 }
 
 #[test]
+fn recordings_of_two_robots_are_not_parts_of_one() {
+    let log = short_log();
+    let (robot, times) = (attached_robot(log), messages(log));
+    let cut = times[times.len() / 3].log_time_nanos;
+    let place = Place::with_log();
+    place.write("a.mcap", rewrite(log, Storage::Zstd, Some(&robot), |_, time| time < cut));
+    let other = robot.replacen("mu = 0.0", "mu = 0.1", 1);
+    assert_ne!(other, robot);
+    place.write("b.mcap", rewrite(log, Storage::Zstd, Some(&other), |_, time| time >= cut));
+    place.run(&["replay", "a.mcap", "b.mcap"]).fails(1, &["different robot files"]);
+    // A file that is named holds for both.
+    place.write("robot.toml", robot);
+    place.run(&["replay", "a.mcap", "b.mcap", "--model", "robot.toml"]).succeeds();
+}
+
+#[test]
 fn a_part_named_twice_counts_once() {
     let place = Place::with_log();
     place.run(&["replay", "log.mcap", "-o", "once.mcap"]).succeeds();

@@ -34,6 +34,12 @@ pub enum AttachedRobotError {
     /// The attachment is not text.
     #[error("{ATTACHED} is not UTF-8 text")]
     NotText,
+    /// Files of the log have different ones.
+    #[error(
+        "the files of the log have different robot files attached; read the recording of each robot by itself, or name the robot \
+         file of all"
+    )]
+    Different,
     /// The attachment is not a valid robot file.
     #[error(transparent)]
     Robot(#[from] RobotFileError),
@@ -53,9 +59,13 @@ impl AttachedRobot {
     /// Returns the robot file attached to a log; `None` if there is none.
     ///
     /// # Errors
-    /// Returns an [`AttachedRobotError`] if it cannot be read or is invalid.
+    /// Returns an [`AttachedRobotError`] if it cannot be read or is invalid, or if files of the log have different ones.
     pub fn find(log: &Log) -> Result<Option<Self>, AttachedRobotError> {
-        let Some(attachment) = log.attachment(ROBOT_FILE)? else { return Ok(None) };
+        let mut attachments = log.attachments_named(ROBOT_FILE)?;
+        let Some(attachment) = attachments.pop() else { return Ok(None) };
+        if attachments.iter().any(|other| other.data != attachment.data) {
+            return Err(AttachedRobotError::Different);
+        }
         let text = String::from_utf8(attachment.data).map_err(|_| AttachedRobotError::NotText)?;
         Ok(Some(Self { robot: RobotFile::parse(&text, ATTACHED)?, text }))
     }

@@ -146,14 +146,14 @@ impl Log {
         }
     }
 
-    /// Reads an attachment by its name; `None` if there is none.
+    /// Reads the attachments of a name, one of each file that has it.
     ///
     /// # Errors
-    /// Returns the errors of [`Recording::attachment`].
-    pub fn attachment(&self, name: &str) -> Result<Option<Attachment>, RecordingError> {
+    /// Returns the errors of [`Recording::attachments_named`].
+    pub fn attachments_named(&self, name: &str) -> Result<Vec<Attachment>, RecordingError> {
         match &self.content {
-            Content::Recording(recording) => recording.attachment(name),
-            Content::Bag(_) | Content::Csv(_) => Ok(None),
+            Content::Recording(recording) => recording.attachments_named(name),
+            Content::Bag(_) | Content::Csv(_) => Ok(Vec::new()),
         }
     }
 

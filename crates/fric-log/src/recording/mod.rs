@@ -168,18 +168,18 @@ impl Recording {
         self.attachments.iter().map(|(_, place)| AttachmentInfo::new(place))
     }
 
-    /// Reads an attachment by its name, the last one if there are several; `None` if there is none.
+    /// Reads the attachments of a name, one of each file that has it: the last one if there are several in it.
     ///
     /// # Errors
     ///
-    /// Returns a [`RecordingError`] if the attachment cannot be read, does not match its checksum, or exceeds [`ATTACHMENT_LIMIT_BYTES`].
-    pub fn attachment(&self, name: &str) -> Result<Option<Attachment>, RecordingError> {
-        let mut places = self.attachments.iter().rev();
-        let found = places.find(|(_, place)| place.name == name);
-        let Some((source, place)) = found.and_then(|(file, place)| Some((self.files.get(*file)?, place))) else {
-            return Ok(None);
+    /// Returns a [`RecordingError`] if an attachment cannot be read, does not match its checksum, or exceeds [`ATTACHMENT_LIMIT_BYTES`].
+    pub fn attachments_named(&self, name: &str) -> Result<Vec<Attachment>, RecordingError> {
+        let of_file = |(file, source)| {
+            let mut places = self.attachments.iter().rev();
+            let (_, place) = places.find(|(of, place)| *of == file && place.name == name)?;
+            Some(attachment::read_attachment(source, place))
         };
-        attachment::read_attachment(source, place).map(Some)
+        self.files.iter().enumerate().filter_map(of_file).collect()
     }
 
     /// Returns the metadata records of all files.

@@ -181,11 +181,11 @@ fn attachments_and_metadata_are_listed() {
     let names: Vec<(String, u64)> = recording.attachments().map(|info| (info.name, info.size_bytes)).collect();
     let expected = [("note", 5), ("note", 6), ("empty", 0)];
     assert_eq!(names, expected.map(|(name, size)| (name.to_owned(), size)));
-    let note = recording.attachment("note").unwrap().unwrap();
+    let note = recording.attachments_named("note").unwrap().pop().unwrap();
     assert_eq!(note.data, b"second");
     assert_eq!((note.info.log_time_nanos, note.info.create_time_nanos), (7, 8));
-    assert_eq!(recording.attachment("empty").unwrap().unwrap().data, b"");
-    assert!(recording.attachment("other").unwrap().is_none());
+    assert_eq!(recording.attachments_named("empty").unwrap().pop().unwrap().data, b"");
+    assert!(recording.attachments_named("other").unwrap().is_empty());
     assert_eq!(recording.metadata()[0].name, "run");
     assert_eq!(recording.metadata()[0].entries["robot"], "rig");
 
@@ -193,6 +193,6 @@ fn attachments_and_metadata_are_listed() {
     let mut damaged = bytes.clone();
     let at = bytes.windows(6).position(|bytes| bytes == b"second").unwrap();
     damaged[at] ^= 1;
-    let error = open(&damaged).unwrap().attachment("note").unwrap_err();
+    let error = open(&damaged).unwrap().attachments_named("note").unwrap_err();
     assert!(error.to_string().contains("the attachment `note`"), "{error}");
 }
