@@ -33,6 +33,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
         text += "\n";
         text += &wrapped("", &format!("{}.", effect.in_words(result)));
     }
+    let is_beside_rest = result.wrench.as_ref().is_some_and(|gap| gap.is_of_no_cable);
     let is_quiet = |cable: &&DiscoverCableResult| {
         cable.verdict == "complete"
             && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
@@ -44,12 +45,12 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
     let quiet: Vec<&str> = result.cables.iter().filter(is_quiet).map(|cable| cable.name.as_str()).collect();
     if let Some(first) = result.cables.iter().find(is_quiet) {
         text += "\n";
-        text += &wrapped("", &format!("{}: {}", listed(&quiet), first.verdict_in_words()));
+        text += &wrapped("", &format!("{}: {}", listed(&quiet), first.verdict_in_words(is_beside_rest)));
     }
     let mut told = Vec::new();
     for cable in result.cables.iter().filter(|cable| !is_quiet(cable)) {
         text += "\n";
-        text += &wrapped("", &format!("{}: {}", cable.name, cable.verdict_in_words()));
+        text += &wrapped("", &format!("{}: {}", cable.name, cable.verdict_in_words(is_beside_rest)));
         text += &details(cable, &mut told);
     }
     text

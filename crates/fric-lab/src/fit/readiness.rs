@@ -220,7 +220,8 @@ impl Lack {
     }
 }
 
-const SILENT_ADVICE: &str = "Compare the names of the cables in the log with those in the robot file; if they agree, all values are gaps.";
+const SILENT_ADVICE: &str =
+    "Compare the names of the cables in the log with those in the robot file; if they agree, all values are gaps.";
 const SENSOR_ADVICE: &str =
     "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the platform.";
 const COLUMN_ADVICE: &str = "Name their columns under `[log.columns]` in the robot file, such as \"cable1.reference_n\" = { column = \"Load cell [N]\" }, or a force that is known as `reference` under `[log]`.";

@@ -141,5 +141,6 @@ pub fn discover(
         discovery.edit.mu = mu_of_holes;
     }
     discovery.base_noise = base_noise;
+    progress.finish_one();
     Ok(discovery)
 }

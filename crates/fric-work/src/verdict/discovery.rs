@@ -1,6 +1,7 @@
 //! The verdict on a discovery: what the model lacks, on which cables, and what to do about it.
 
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, EffectResult, RunnerUpResult, WrenchGap};
+use fric_lab::discover::words::FROM_OUTSIDE;
 use fric_lab::text::listed;
 
 use super::{Tone, Verdict};
@@ -42,12 +43,15 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     if !worse.is_empty() {
         parts.push(format!("The extended model is worse on {}.", names(&worse)));
     }
+    let is_of_no_cable = result.wrench.as_ref().is_some_and(|gap| gap.is_of_no_cable);
     let has_faults = result.cables.iter().any(|cable| !cable.faults.is_empty());
     let is_whole_complete =
         complete.len() == count && result.wrench.as_ref().is_none_or(|gap| gap.verdict == "complete");
     if is_whole_complete {
-        let rest = if has_faults { "noise and faults of the recording" } else { "noise" };
-        parts.push(format!("The model is complete on {}: what is left is {rest}.", names(&complete)));
+        parts.push(format!("The model is complete on {}: what is left is noise.", names(&complete)));
+        if has_faults {
+            parts.push("The recording has faults.".to_owned());
+        }
     } else {
         if !kinds.is_empty() {
             let all: Vec<String> = kinds.iter().map(|(kind, cables, _)| format!("{kind} ({})", on(cables))).collect();
@@ -64,7 +68,9 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
         }
         if !complete.is_empty() {
             let rest = if complete.len() == 1 { "agrees" } else { "agree" };
-            parts.push(format!("{} {rest} with the model to the noise.", capitalised(&names(&complete))));
+            if !is_of_no_cable {
+                parts.push(format!("{} {rest} with the model to the noise.", capitalised(&names(&complete))));
+            }
         }
     }
     let mut todo: Vec<String> = Vec::new();
@@ -72,6 +78,9 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
         todo.push(format!("{kind} on {}: {remedy}.", on(cables)));
     }
     todo.extend(result.wrench.iter().flat_map(WrenchGap::corrections));
+    if is_of_no_cable {
+        todo.push(FROM_OUTSIDE.to_owned());
+    }
     for cable in &unexplained {
         todo.push(format!("Look where the rest of {} lies, below, and record more there.", cable.name));
     }
@@ -105,7 +114,7 @@ fn remedy(effect: &EffectResult, as_good: Option<&RunnerUpResult>) -> String {
         || effect.remedy(),
         |other| {
             format!(
-                "if it is {}, {}; if it is {}, {}; fric-cli excite --separate {},{} writes the run that tells them apart",
+                "if it is {}, {}. If it is {}, {}. `fric-cli excite --separate {},{}` designs a run to tell them apart",
                 effect.kind,
                 effect.remedy(),
                 other.kind,

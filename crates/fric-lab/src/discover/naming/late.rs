@@ -1,5 +1,4 @@
-//! A sensor that follows late where undoing its lag makes more noise than it explains: whether a motion that is known too early may be that, which to first
-//! order is the same, and whether it explains what is left.
+//! A lag of the force sensor that no fit finds: one that looks like a motion known too early, and one whose removal makes more noise than it explains.
 
 use fric_core::effects::Effect;
 use fric_core::effects::sensor_lag::{SMOOTHING, TIME_CONSTANT};
@@ -20,7 +19,7 @@ const NEXT: f64 = 1.2;
 const TIME_CONSTANT_COUNT: i32 = 24;
 /// Such a lag is judged behind a low-pass filter that is this many times as slow: undoing it then leaves the noise quieter than it is.
 const BEHIND: f64 = 4.0;
-/// Smoothing with which the lag is undone, as multiples of its time constant. The one that leaves least is told.
+/// Smoothing with which the lag is undone, as multiples of its time constant: the one that leaves least.
 const SMOOTHING_RATIOS: [f64; 5] = [0.5, 1.0, 1.5, 2.0, 3.0];
 /// Number of times that its time constant and the friction are determined one after the other.
 const ROUNDS_OF_LAG: usize = 2;
@@ -72,7 +71,8 @@ impl Search<'_, '_> {
         if has(Effect::SensorLag, &model.values) {
             return None;
         }
-        let delayed = self.beside(found, &[Effect::TimeDelay]).pop().filter(|_| !found.contains(&Effect::TimeDelay));
+        let delay = [Effect::TimeDelay];
+        let delayed = if found.contains(&delay[0]) { None } else { self.beside(found, &delay).pop() };
         let rivals: Vec<Vec<f64>> = std::iter::once(&model)
             .chain(delayed.as_ref().map(|(_, trial)| trial))
             .map(|trial| self.bench.residuals_n(&trial.values))
@@ -91,8 +91,8 @@ impl Search<'_, '_> {
             let independent = interval_s / (2.0 * BEHIND * time_constant_s);
             let against = |rival: &Vec<f64>| {
                 let of_rival = self.behind(rival, BEHIND * time_constant_s);
-                let of_part = |([lag, count], [other, _]): (&[f64; 2], &[f64; 2])| {
-                    delta_bic(count * independent, lag / other, 1.0)
+                let of_part = |([lag, count], [other, of_other]): (&[f64; 2], &[f64; 2])| {
+                    delta_bic(count * independent, (lag / count) / (other / of_other), 1.0)
                 };
                 of_lag.iter().zip(&of_rival).map(of_part).fold(f64::NEG_INFINITY, f64::max)
             };
@@ -100,7 +100,8 @@ impl Search<'_, '_> {
         };
         let of_times = times_s.iter().map(|time_s| (evidence(*time_s), *time_s));
         let (strongest, mut time_constant_s) = of_times.min_by(|(one, _), (other, _)| one.total_cmp(other))?;
-        if strongest >= -STRONG_BIC {
+        let is_at_end = |time_s: f64| times_s.first() == Some(&time_s) || times_s.last() == Some(&time_s);
+        if strongest >= -STRONG_BIC || is_at_end(time_constant_s) {
             return None;
         }
         let mut trial = model.clone();

@@ -433,7 +433,11 @@ impl<'b, 'a> Search<'b, 'a> {
             })
             .filter(|tried| self.delta_bic(&model, &tried.trial, tried.inflation) < least_evidence)
             .collect();
-        if !is_within_noise && let Some(hidden) = self.hidden_lag(found) {
+        if !is_within_noise
+            && let Some(hidden) = self.hidden_lag(found)
+            && hidden.trial.training < model.training
+            && hidden.trial.held_out < model.held_out
+        {
             tried.retain(|tried| tried.effect != hidden.effect);
             tried.push(hidden);
         }

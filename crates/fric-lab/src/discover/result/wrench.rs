@@ -32,6 +32,9 @@ pub struct WrenchGap {
     pub geometry: Vec<GeometryResult>,
     /// Findings for all cables together that help but do not suffice.
     pub tried: Vec<TriedTogether>,
+    /// Whether something is left that no error of one cable's force accounts for.
+    #[serde(skip)]
+    pub is_of_no_cable: bool,
 }
 
 /// One component of the wrench.
@@ -99,6 +102,7 @@ impl WrenchGap {
         Self {
             reference: found.reference.name(),
             verdict: found.verdict.name(),
+            is_of_no_cable: found.is_of_no_cable,
             before: WrenchError::of(&found.before.errors),
             after: WrenchError::of(&found.after.errors),
             noise_floor: WrenchError { force_rms_n: length(force), torque_rms_nm: length(torque) },

@@ -152,15 +152,19 @@ impl DiscoverCableResult {
         }
     }
 
-    /// Returns the verdict on the cable in sentences.
+    /// Returns the verdict on the cable in sentences. `is_beside_rest` says that something is left of the wrench that is of no cable.
     #[must_use]
-    pub fn verdict_in_words(&self) -> String {
+    pub fn verdict_in_words(&self, is_beside_rest: bool) -> String {
         if let Some(missing) = &self.missing {
             return format!("Nothing can be told: {}. {}", missing.cause, missing.advice);
         }
         let all: Vec<&EffectResult> = self.effects.iter().collect();
         let wander_n = self.wander_n.filter(|wander_n| *wander_n > 0.0).map(newtons);
         let mut text = match self.verdict {
+            "complete" if is_beside_rest => "Nothing of what is left of the wrench is told to be of this cable.".to_owned(),
+            "extended" if is_beside_rest => {
+                format!("The model lacks {}. Nothing of what is left of the wrench is told to be of this cable.", names(&all))
+            }
             "complete" if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
             "complete" if self.tried.iter().any(|tried| tried.is_within_noise) => {
                 "With values fitted to the log, the model agrees with it to the noise, as far as the log shows what its noise is. \

@@ -153,9 +153,10 @@ impl Refusal {
                     condition(signal)
                 )
             }
-            Self::Contradicted => "the lengths of the log contradict it".to_owned(),
+            Self::Contradicted => "the lengths of the log contradict it, unless they are computed from the pose with the points of this file".to_owned(),
             Self::Louder { time_constant_s } => format!(
-                "undoing it makes the noise louder that enters behind the sensor's filter; behind a low-pass filter it shows a time constant of about {}",
+                "that is with a smoothing, without which the noise that enters behind the sensor's filter gets louder than what the lag explains; \
+                 behind a low-pass filter it shows a time constant of about {}",
                 quantity(time_constant_s, None, "s")
             ),
         }

@@ -9,6 +9,7 @@ mod wrench;
 use crate::text::number;
 
 pub use faults::recording_lines;
+pub use wrench::FROM_OUTSIDE;
 
 /// Unit suffixes of keys, the longer ones first.
 const UNITS: [&str; 13] = [

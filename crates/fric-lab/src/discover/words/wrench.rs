@@ -5,6 +5,10 @@ use crate::discover::result::{GeometryResult, WrenchComponent, WrenchGap};
 use crate::discover::wrench::Geometry;
 use crate::replay::WrenchReference;
 
+/// What to do about a rest of the wrench that is of no cable.
+pub const FROM_OUTSIDE: &str =
+    "Look for what acts on the platform and is not in the log: a force from outside, a load that changes.";
+
 impl WrenchGap {
     /// Returns what the forces were compared with.
     #[must_use]
@@ -41,12 +45,11 @@ impl WrenchGap {
         let rest = self.after.filter(|_| self.verdict == Verdict::Unexplained.name()).map(|after| {
             let [after, noise] =
                 [after, self.noise_floor].map(|of| format!("{:.4} N and {:.4} Nm", of.force_rms_n, of.torque_rms_nm));
-            format!(
-                "Of the wrench {after} are left, where the noise is {noise}. If no cable is told to be the cause, look for what acts on \
-                 the platform and is not in the log: a force from outside, or a load that changes."
-            )
+            format!("Of the wrench {after} are left, where the noise is {noise}.")
         });
-        alike.chain(self.corrections()).chain(scale).chain(tried).chain(rest).collect()
+        let from_outside =
+            self.is_of_no_cable.then(|| format!("No error of one cable's force accounts for it. {FROM_OUTSIDE}"));
+        alike.chain(self.corrections()).chain(scale).chain(tried).chain(rest).chain(from_outside).collect()
     }
 }
 
@@ -75,6 +78,7 @@ mod tests {
 
     fn gap(reference: WrenchReference, geometry: Vec<GeometryResult>) -> WrenchGap {
         WrenchGap {
+            is_of_no_cable: false,
             reference: reference.name(),
             verdict: "extended",
             before: None,

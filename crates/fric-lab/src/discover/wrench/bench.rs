@@ -347,21 +347,25 @@ impl<'a> Bench<'a> {
         columns.zip(deviations).map(nearest).collect()
     }
 
-    /// Returns the root mean square of the wrench's error if every force is off by this fraction of itself, and its sensor wanders by as much: six whitened
-    /// components.
+    /// Returns the root mean square of the wrench's error, six components, if the force of every cable is off by `ratio` of itself and by its `wander_n`, N,
+    /// independently of each other.
     pub fn believed_wrench(&self, model: &Model, ratio: f64, wander_n: &[f64]) -> [f64; 6] {
         let (structure, _) = self.description.changed(&model.changes);
         let count = self.records.len();
         let (mut squares, mut samples) = (Vector6::<f64>::zeros(), 0.0);
         for (place, _) in self.counts.iter().enumerate().filter(|(_, counts)| **counts) {
             let columns = structure.iter().skip(place * count).take(count);
+            let mut of_sample = Vector6::zeros();
             for ((column, record), wander_n) in columns.zip(&self.records).zip(wander_n) {
                 let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
                 let error_n = (ratio * sensor_n * record.params.frictionless_gain()).hypot(*wander_n);
                 let of_cable = self.whitening * column * error_n;
-                squares += of_cable.component_mul(&of_cable);
+                of_sample += of_cable.component_mul(&of_cable);
             }
-            samples += 1.0;
+            if of_sample.iter().all(|square| square.is_finite()) {
+                squares += of_sample;
+                samples += 1.0;
+            }
         }
         (squares / samples).map(f64::sqrt).into()
     }

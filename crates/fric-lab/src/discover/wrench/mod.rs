@@ -53,6 +53,8 @@ pub struct WrenchDiscovery {
     pub reference: WrenchReference,
     /// The verdict on all cables together.
     pub verdict: Verdict,
+    /// Whether something is left that no error of one cable's force accounts for: the cables' own verdicts do not see it.
+    pub is_of_no_cable: bool,
     /// Deviation of the given model on the held-out samples.
     pub before: WrenchDeviation,
     /// Deviation of the extended model on the held-out samples.
@@ -160,7 +162,8 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     let (mut fitted, mut whitening) = confirmed(&mut naming).ok_or_else(too_short)?;
     // Names that leave more of the wrench than there was stand for something that the whitening has taken for noise.
     if !naming.named.is_empty() && leaves_more(&bench, &base.model, &fitted.model) {
-        naming = Naming::start(base.clone(), &bench.whitening, Vec::new());
+        let tried = std::mem::take(&mut naming.tried);
+        naming = Naming { tried, ..Naming::start(base.clone(), &bench.whitening, Vec::new()) };
         (fitted, whitening) = confirmed(&mut naming).ok_or_else(too_short)?;
     }
     all.whitening = whitening;
@@ -213,19 +216,22 @@ fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
     held
 }
 
-/// Whether a model leaves more of the wrench than another one on the held-out samples, by more than what its noise may differ.
+/// The mean square of what names leave may exceed that of what there was by this fraction: they are fitted to another whitening.
+const NO_MORE: f64 = 0.02;
+
+/// Whether a model leaves more of the wrench than another one on the held-out samples, by more than noise and fit may differ.
 fn leaves_more(bench: &Bench<'_>, before: &bench::Model, after: &bench::Model) -> bool {
     let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
     let held_out = bench.used(true);
     let components = |model: &bench::Model| WrenchDeviation::of(&plain.deviations(model), &held_out).components;
     let Some(noise) = plain.noise(before) else { return false };
-    let more = components(after).into_iter().zip(components(before)).zip(noise);
-    let more = more.filter(|(_, noise)| *noise > 0.0);
-    let excess: f64 =
-        more.clone().map(|((after, before), noise)| (after * after - before * before) / (noise * noise)).sum();
+    let (after, before) = (components(after), components(before));
+    let squares = |of: [f64; 6]| -> f64 {
+        of.into_iter().zip(noise).filter(|(_, noise)| *noise > 0.0).map(|(rms, noise)| (rms / noise).powi(2)).sum()
+    };
     #[expect(clippy::cast_precision_loss, reason = "at most six")]
-    let count = more.count() as f64;
-    excess > WORTH * count
+    let count = noise.iter().filter(|noise| **noise > 0.0).count() as f64;
+    squares(after) - squares(before) > (WORTH * count).max(NO_MORE * squares(before))
 }
 
 fn too_short() -> FitError {

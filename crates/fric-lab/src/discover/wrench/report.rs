@@ -20,9 +20,9 @@ use crate::replay::Deviation;
 use crate::samples::conditions::conditions;
 use crate::set_up::SetUp;
 
-/// What is left of the wrench is no noise if its mean square exceeds that of the noise by more than this fraction: 1.1 times the noise, to which a cable's
-/// own verdict is blind where the whitening has taken it for noise. Logs of an independent simulator that are rightly called complete or extended have up to
-/// 1.09; half of it would refuse some of these, and twice as much let pass no other of its forces from outside.
+/// Something is left of the wrench if its mean square exceeds that of noise, friction error and wander by more than this fraction, 1.1 times the rms. A cable's
+/// own verdict does not see it where the whitening takes it for noise. Of an independent simulator's logs, those that are rightly called complete or extended
+/// have up to 1.09 times the noise alone, so that half of this would refuse some; twice as much still finds all its forces from outside, at 3 times and more.
 const MOST_EXCESS: f64 = 0.21;
 
 /// A finished search.
@@ -56,16 +56,12 @@ impl Case<'_, '_> {
             let count = fitted.model.unknowns().len();
             DMatrix::from_element(count, count, f64::INFINITY)
         });
-        let cables = |is_left: bool| -> Vec<CableDiscovery> {
-            (0..bench.records.len()).map(|cable| self.cable(cable, &covariance, is_left)).collect()
-        };
-        let mut of_noise = cables(false);
-        if plain.leaves_more_than_noise(&fitted.model, &after, &noise, &of_noise) {
-            of_noise = cables(true);
-        }
-        let cables = of_noise;
+        let cables: Vec<CableDiscovery> =
+            (0..bench.records.len()).map(|cable| self.cable(cable, &covariance)).collect();
         let is_any = |verdict: Verdict| cables.iter().any(|cable| cable.verdict == verdict);
-        let verdict = if is_any(Verdict::Unexplained) {
+        let is_of_no_cable =
+            !is_any(Verdict::Unexplained) && plain.leaves_more_than_noise(&fitted.model, &after, &noise, &cables);
+        let verdict = if is_of_no_cable || is_any(Verdict::Unexplained) {
             Verdict::Unexplained
         } else if naming.named.is_empty() {
             Verdict::Complete
@@ -104,6 +100,7 @@ impl Case<'_, '_> {
         Ok(WrenchDiscovery {
             reference: description.reference,
             verdict,
+            is_of_no_cable,
             before,
             after,
             noise,
@@ -115,8 +112,8 @@ impl Case<'_, '_> {
         })
     }
 
-    /// Returns the result of one cable. `is_left` says that the wrench has a rest, of whatever cable.
-    fn cable(&self, cable: usize, covariance: &DMatrix<f64>, is_left: bool) -> CableDiscovery {
+    /// Returns the result of one cable.
+    fn cable(&self, cable: usize, covariance: &DMatrix<f64>) -> CableDiscovery {
         let Self { bench, base, naming, fitted, samples, faults, .. } = *self;
         let record = &bench.records[cable];
         let residual_n = |trial: &Trial| bench.of_cable_n(&trial.model, &bench.deviations(&trial.model), cable);
@@ -157,7 +154,7 @@ impl Case<'_, '_> {
             }
             _ => None,
         });
-        let unexplained = (!is_noise || is_left).then(|| Unexplained {
+        let unexplained = (!is_noise).then(|| Unexplained {
             rms_n: (share.max(0.0) * floor_n * floor_n).sqrt(),
             places: places.clone(),
             intervals_s: excess.intervals_s(|cycle| {

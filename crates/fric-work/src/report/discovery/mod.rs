@@ -41,7 +41,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance:
         @for (place, (cable, found)) in result.cables.iter().zip(discoveries).enumerate() {
             section.cable id=(format!("cable-{place}")) data-cable=(place) {
                 h2 { (cable.name) ": " span class={ "verdict " (cable.verdict) } { (cable.verdict) } }
-                p { (cable.verdict_in_words()) }
+                p { (cable.verdict_in_words(result.wrench.as_ref().is_some_and(|gap| gap.is_of_no_cable))) }
                 @if cable.noise_floor_n.is_some() { (details(&mut plots, &common, cable, found)) }
             }
         }
