@@ -216,10 +216,7 @@ fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
     held
 }
 
-/// The mean square of what names leave may exceed that of what there was by this fraction: they are fitted to another whitening.
-const NO_MORE: f64 = 0.02;
-
-/// Whether a model leaves more of the wrench than another one on the held-out samples, by more than noise and fit may differ.
+/// Whether a model leaves more of the wrench than another one on the held-out samples, by more than its noise may differ.
 fn leaves_more(bench: &Bench<'_>, before: &bench::Model, after: &bench::Model) -> bool {
     let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
     let held_out = bench.used(true);
@@ -231,7 +228,7 @@ fn leaves_more(bench: &Bench<'_>, before: &bench::Model, after: &bench::Model) -
     };
     #[expect(clippy::cast_precision_loss, reason = "at most six")]
     let count = noise.iter().filter(|noise| **noise > 0.0).count() as f64;
-    squares(after) - squares(before) > (WORTH * count).max(NO_MORE * squares(before))
+    squares(after) - squares(before) > WORTH * count
 }
 
 fn too_short() -> FitError {
