@@ -41,9 +41,10 @@ const STEP_RATIO: f64 = 1e-4;
 /// Minimum mass, as a fraction of the stated one. A platform without weight on slack cables is always in balance.
 const LEAST_MASS_RATIO: f64 = 0.1;
 
-/// A correction is contradicted if it raises the variance of the lengths by more than this factor, beyond what lengths are known to, m. In three logs of an
+/// A correction is contradicted if it raises the variance of the lengths by more than this factor. In three logs of an
 /// independent simulator with forces from outside false points raise it 10⁴ times and more; a true one makes it 3000 times smaller.
 const CONTRADICTED: f64 = 2.0;
+/// Deviation of the lengths, m, below which nothing is contradicted.
 const EXACT_M: f64 = 1e-5;
 
 impl Geometry {
