@@ -173,6 +173,7 @@ class WrenchGap(TypedDict):
     components: list[WrenchComponent]
     alike: list[str]
     geometry: list[WrongNumber]
+    inertia_kg_m2: list[float] | None
     tried: list[TriedTogether]
 
 

@@ -122,6 +122,8 @@ pub struct PlatformEdit {
     pub mass_kg: Option<f64>,
     /// Centre of mass, platform frame, m.
     pub center_of_mass_m: Option<[f64; 3]>,
+    /// Inertia tensor about the centre of mass, platform axes, kg m²: xx, xy, xz, yy, yz, zz.
+    pub inertia_kg_m2: Option<[f64; 6]>,
     /// Gravity, base frame, m/s².
     pub gravity_m_per_s2: Option<[f64; 3]>,
 }
@@ -136,6 +138,7 @@ pub fn set_platform(text: &str, origin: &str, edit: &PlatformEdit) -> Result<Str
     let values = [
         ("mass_kg", edit.mass_kg.as_ref().map(|mass_kg| Numbers::One(*mass_kg))),
         ("center_of_mass_m", edit.center_of_mass_m.as_ref().map(|center_m| Numbers::List(center_m))),
+        ("inertia_kg_m2", edit.inertia_kg_m2.as_ref().map(|inertia| Numbers::List(inertia))),
         ("gravity_m_per_s2", edit.gravity_m_per_s2.as_ref().map(|gravity| Numbers::List(gravity))),
     ];
     let mut text = text.to_owned();

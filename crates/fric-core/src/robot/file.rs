@@ -63,6 +63,9 @@ pub struct PlatformTable {
     /// Centre of mass, platform frame, m.
     #[serde(deserialize_with = "exactly")]
     pub center_of_mass_m: [f64; 3],
+    /// Inertia tensor about the centre of mass, platform axes, kg m²: xx, xy, xz, yy, yz, zz.
+    #[serde(deserialize_with = "exactly")]
+    pub inertia_kg_m2: [f64; 6],
     /// Gravity, base frame, m/s².
     #[serde(deserialize_with = "exactly")]
     pub gravity_m_per_s2: [f64; 3],
@@ -70,8 +73,8 @@ pub struct PlatformTable {
 
 impl Default for PlatformTable {
     fn default() -> Self {
-        let PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 } = PlatformOptions::default();
-        Self { mass_kg, center_of_mass_m, gravity_m_per_s2 }
+        let PlatformOptions { mass_kg, center_of_mass_m, inertia_kg_m2, gravity_m_per_s2 } = PlatformOptions::default();
+        Self { mass_kg, center_of_mass_m, inertia_kg_m2, gravity_m_per_s2 }
     }
 }
 
@@ -383,7 +386,7 @@ impl RobotFile {
 impl RobotOptions {
     /// Returns the checked parameters of a robot with these cables, without the cables themselves.
     fn robot_params(&self, cables: &[CableParams]) -> Result<RobotParams<'static>, OptionsError> {
-        let PlatformTable { mass_kg, center_of_mass_m, gravity_m_per_s2 } = self.platform;
+        let PlatformTable { mass_kg, center_of_mass_m, inertia_kg_m2, gravity_m_per_s2 } = self.platform;
         let standard = MonitorOptions::for_cycle(self.cycle_s);
         let monitor = MonitorOptions {
             frozen_cycles: self.monitor.frozen_cycles.unwrap_or(standard.frozen_cycles),
@@ -391,7 +394,7 @@ impl RobotOptions {
             length_noise_m: self.monitor.length_noise_m.unwrap_or(standard.length_noise_m),
             sensor_jump_n: self.monitor.sensor_jump_n,
         };
-        let platform = PlatformOptions { mass_kg, center_of_mass_m, gravity_m_per_s2 };
+        let platform = PlatformOptions { mass_kg, center_of_mass_m, inertia_kg_m2, gravity_m_per_s2 };
         let robot = RobotParams::new(self.cycle_s, &platform, monitor, cables)
             .map_err(|error| self.name_parameter(cables, error))?;
         let known_reference = self.log.reference.check(robot.gravity_m_per_s2.norm())?;
@@ -401,7 +404,7 @@ impl RobotOptions {
     /// Returns the error with the position of a refused parameter of the whole robot.
     fn name_parameter(&self, cables: &[CableParams], error: ParamError) -> OptionsError {
         let table = match error.key {
-            "mass_kg" | "center_of_mass_m" | "gravity_m_per_s2" => Some(Step::Key("platform")),
+            "mass_kg" | "center_of_mass_m" | "inertia_kg_m2" | "gravity_m_per_s2" => Some(Step::Key("platform")),
             "length_jump_m" | "length_noise_m" | "sensor_jump_n" => Some(Step::Key("monitor")),
             "delay_s" => return self.delay_error(cables, error),
             _ => None,

@@ -21,7 +21,9 @@ use crate::replay::Deviation;
 use crate::search::optimizer::Termination;
 use crate::search::pass::Forces;
 use crate::search::problem::{Comparison, Member, Problem};
-use crate::search::solve::{CONTRADICTION_RATIO, NEAR_ERRORS, Solution, Unknown, hold, squares, unknowns};
+use crate::search::solve::{
+    CONTRADICTION_RATIO, GROSS_CONTRADICTION, NEAR_ERRORS, Solution, Unknown, hold, squares, unknowns,
+};
 use crate::search::vector::Coordinate;
 
 /// The uncertainty of the parameters at some values.
@@ -168,10 +170,11 @@ impl Solution {
             let Some((held, combination)) = next else { return };
             let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
             // The bound refers to the values before the first parameter was held, because many small steps add up.
-            let bound = *least.get_or_insert_with(|| squares(problem, &self.values)) * (1.0 + CONTRADICTION_RATIO);
+            let least = *least.get_or_insert_with(|| squares(problem, &self.values));
+            let bound = least * if stays_open { GROSS_CONTRADICTION } else { 1.0 + CONTRADICTION_RATIO };
             hold(problem, held, &mut self.values, given);
             self.search_on(problem, cycle_s);
-            if squares(problem, &self.values) > bound && !stays_open {
+            if squares(problem, &self.values) > bound {
                 (problem.members, self.values, self.termination) = (members, found, termination);
                 kept.push(held);
             } else {

@@ -75,7 +75,7 @@ impl Hold {
     /// Returns the cable that is furthest out of bounds with the forces nearest to the wanted ones, and its force, N; `None` if no forces of either
     /// sign hold the platform.
     fn worst(&mut self, set_point: &SetPoint, wanted_n: f64) -> Option<(usize, f64)> {
-        let wrench = self.platform.outside_wrench(&set_point.orientation, &set_point.acceleration_m_per_s2);
+        let wrench = self.platform.wrench_at(set_point);
         self.forces_n.fill(wanted_n);
         let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
         if !self.distribution.solve_within(&self.columns, &wrench, unbounded, &mut self.forces_n) {

@@ -10,8 +10,8 @@
 //!
 //! The six deviations are weighted by the inverse of their covariance, estimated from the first fit. The standard errors do not rely on it.
 
-use fric_core::Wrench;
 use fric_core::parameters::{OFFSET, Values};
+use fric_core::{Pose, Wrench};
 use nalgebra::{Matrix6, Vector6};
 
 use super::balance;
@@ -32,7 +32,7 @@ use crate::samples::split::split;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::solve::{Solution, Unknown, contradicts, search, settle, solve};
 use crate::search::vector::Parameter;
-use crate::weight;
+use crate::weight::{self, Body, Motion};
 
 /// A sample between two measurements counts if the connecting line is off by less than this fraction of the noise, which is at most 6 % of its
 /// variance.
@@ -71,6 +71,8 @@ pub fn fit_wrench(
 pub struct ReferenceWrenches {
     /// Whether the wrench is from the log or from the mass.
     pub kind: WrenchReference,
+    /// The motion of the platform in each sample, if the wrench is from the mass; else empty.
+    pub motions: Vec<Option<Motion>>,
     /// The external wrench of each sample; NaN if there is none.
     pub outside: Vec<Vector6<f64>>,
     /// Which samples are measured rather than interpolated between two measured wrenches.
@@ -85,10 +87,11 @@ impl ReferenceWrenches {
     pub fn of(measurements: &Measurements<'_>) -> Result<Self, FitError> {
         let is_measured = measurements.platform().wrenches.iter().any(Option::is_some);
         let kind = if is_measured { WrenchReference::Measured } else { WrenchReference::Mass };
-        let outside = outside_wrenches(measurements, kind);
+        let motions = if is_measured { Vec::new() } else { motions(measurements) };
+        let outside = outside_wrenches(measurements, kind, &motions);
         balance::check(&measurements.platform().structure, &outside, measurements.robot().cables().len())?;
         let measured = measured_wrenches(measurements);
-        let mut references = Self { kind, straight: vec![false; outside.len()], outside, measured };
+        let mut references = Self { kind, motions, straight: vec![false; outside.len()], outside, measured };
         references.find_straight(measurements);
         Ok(references)
     }
@@ -422,15 +425,29 @@ impl Earlier {
 }
 
 /// Returns the external wrench of each sample; NaN if there is none.
-fn outside_wrenches(measurements: &Measurements<'_>, reference: WrenchReference) -> Vec<Vector6<f64>> {
+fn outside_wrenches(
+    measurements: &Measurements<'_>,
+    reference: WrenchReference,
+    motions: &[Option<Motion>],
+) -> Vec<Vector6<f64>> {
     let platform = measurements.platform();
-    let vector = |wrench: &Option<Wrench>| wrench.as_ref().map_or_else(|| Vector6::repeat(f64::NAN), Wrench::to_vector);
+    let vector = |wrench: Option<Wrench>| wrench.map_or_else(|| Vector6::repeat(f64::NAN), |wrench| wrench.to_vector());
     if reference == WrenchReference::Measured {
-        return platform.wrenches.iter().map(vector).collect();
+        return platform.wrenches.iter().copied().map(vector).collect();
     }
-    let ends = measurements.starts().iter().skip(1).copied().chain([platform.poses.len()]);
-    let logs = measurements.starts().iter().zip(ends).filter_map(|(start, end)| platform.poses.get(*start..end));
-    logs.flat_map(|poses| weight::wrenches(measurements.robot(), poses)).map(|wrench| vector(&wrench)).collect()
+    let body = Body::of(measurements.robot());
+    let of_sample = |(pose, motion): (&Option<Pose>, &Option<Motion>)| {
+        pose.zip(*motion).map(|(pose, motion)| body.wrench(&pose.orientation, &motion))
+    };
+    platform.poses.iter().zip(motions).map(of_sample).map(vector).collect()
+}
+
+/// Returns the motion of the platform in each sample.
+fn motions(measurements: &Measurements<'_>) -> Vec<Option<Motion>> {
+    let poses = &measurements.platform().poses;
+    let ends = measurements.starts().iter().skip(1).copied().chain([poses.len()]);
+    let logs = measurements.starts().iter().zip(ends).filter_map(|(start, end)| poses.get(*start..end));
+    logs.flat_map(|poses| weight::motions(measurements.robot(), poses)).collect()
 }
 
 /// Returns the standing of each sample for all cables together: that of the first cable for which it cannot be used.

@@ -23,6 +23,8 @@ const HUBER_RATIO: f64 = 1.345;
 const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
 /// A given value contradicts the samples if it raises the sum of squares by more than this fraction.
 pub(crate) const CONTRADICTION_RATIO: f64 = 0.01;
+/// A given value within its interval contradicts them only beyond this factor: the interval, of straight lines, does not hold where friction ends.
+pub(crate) const GROSS_CONTRADICTION: f64 = 2.0;
 /// A search continues to within this many standard errors of the minimum.
 pub(crate) const NEAR_ERRORS: f64 = 0.01;
 /// A stiffness beyond this fraction of the end of its range has gone there. Half and twice this fraction are the same: contacts have 10⁹ N/m at most,

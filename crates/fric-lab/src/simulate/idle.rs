@@ -6,7 +6,7 @@
 //!
 //! The friction is that of [`super::bristle`], never the compensator's, and each pulley's μ differs from the value that the compensator knows. The
 //! servo is critically damped and of second order, the same on all axes. The tensions hold the platform's weight and inertia around a constant
-//! prestress. Rotations are quasi-static, as elsewhere in the simulation.
+//! prestress. Rotations are quasi-static.
 
 use fric_core::admittance::{Admittance, AdmittanceOptions, SetPoint};
 use fric_core::robot::file::RobotFile;

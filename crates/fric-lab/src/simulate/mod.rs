@@ -7,8 +7,7 @@
 //! tensions. A bristle on every pulley creates friction (\[P\] 4–7, 16, in a different form and solved by a different method). Winches move slightly
 //! at standstill. Sensor and reference are noisy. On request, every effect of the catalogue ([`HiddenEffect`]) and [`Disturbance`]s outside the
 //! catalogue are hidden in the log; a hand pushes, noise drifts, and lengths come from an encoder. [`sweep`] makes many such logs at random.
-//! Rotations are quasi-static, because the robot file has no inertia tensor. Sagging cables, slip on a pulley and waves along an elastic cable are
-//! not simulated.
+//! Sagging cables, slip on a pulley and waves along an elastic cable are not simulated.
 //!
 //! The friction values of the robot file are the true parameters. `offset_n` is added to the reference, so that a fit finds the same offset. The
 //! input is checked at set-up ([`SimulationError`]); running cannot fail.

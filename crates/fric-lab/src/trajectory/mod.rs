@@ -136,6 +136,8 @@ pub struct SetPoint {
     pub angular_velocity_rad_per_s: Vector3<f64>,
     /// Acceleration, m/s².
     pub acceleration_m_per_s2: Vector3<f64>,
+    /// Angular acceleration, rad/s².
+    pub angular_acceleration_rad_per_s2: Vector3<f64>,
 }
 
 impl SetPoint {
@@ -147,6 +149,7 @@ impl SetPoint {
             velocity_m_per_s: Vector3::zeros(),
             angular_velocity_rad_per_s: Vector3::zeros(),
             acceleration_m_per_s2: Vector3::zeros(),
+            angular_acceleration_rad_per_s2: Vector3::zeros(),
         }
     }
 
@@ -262,6 +265,7 @@ impl Trajectory {
             return SetPoint {
                 orientation: rotation(&turned_rad),
                 angular_velocity_rad_per_s: axis * along.speed,
+                angular_acceleration_rad_per_s2: axis * along.acceleration,
                 ..resting
             };
         }

@@ -217,6 +217,8 @@ table! {
         mass_kg,
         /// Centre of mass in the platform frame, m.
         center_of_mass_m,
+        /// Inertia tensor about the centre of mass in the platform's axes, kg m²: xx, xy, xz, yy, yz, zz.
+        inertia_kg_m2,
         /// Gravity in the base frame, m/s².
         gravity_m_per_s2,
     }

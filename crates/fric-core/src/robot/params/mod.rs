@@ -6,7 +6,7 @@
 mod cable;
 mod cable_options;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use self::cable::check_point;
 use crate::effects::Effect;
@@ -28,6 +28,9 @@ pub struct PlatformOptions {
     pub mass_kg: f64,
     /// Centre of mass, platform frame, m.
     pub center_of_mass_m: [f64; 3],
+    /// Inertia tensor about the centre of mass, platform axes, kg m²: xx, xy, xz, yy, yz, zz. The products xy, xz, yz are entries of the tensor, as in
+    /// ROS and URDF: xy = −∫ x·y dm.
+    pub inertia_kg_m2: [f64; 6],
     /// Gravity, base frame, m/s².
     pub gravity_m_per_s2: [f64; 3],
 }
@@ -35,7 +38,12 @@ pub struct PlatformOptions {
 impl Default for PlatformOptions {
     /// Returns a platform without mass, with standard gravity downwards.
     fn default() -> Self {
-        Self { mass_kg: 0.0, center_of_mass_m: [0.0; 3], gravity_m_per_s2: [0.0, 0.0, -9.80665] }
+        Self {
+            mass_kg: 0.0,
+            center_of_mass_m: [0.0; 3],
+            inertia_kg_m2: [0.0; 6],
+            gravity_m_per_s2: [0.0, 0.0, -9.80665],
+        }
     }
 }
 
@@ -84,12 +92,23 @@ fn check_length_noise(monitor: &MonitorOptions) -> Result<f64, ParamError> {
     Ok(length_noise_m)
 }
 
+/// Checks an inertia tensor: moments are not negative.
+fn check_inertia(inertia_kg_m2: [f64; 6]) -> Result<Matrix3<f64>, ParamError> {
+    const MOST_KG_M2: f64 = 1e9;
+    let [xx, xy, xz, yy, yz, zz] = inertia_kg_m2;
+    let check = |number: f64, least: f64| check("inertia_kg_m2", number, least, MOST_KG_M2);
+    let (xx, yy, zz) = (check(xx, 0.0)?, check(yy, 0.0)?, check(zz, 0.0)?);
+    let (xy, xz, yz) = (check(xy, -MOST_KG_M2)?, check(xz, -MOST_KG_M2)?, check(yz, -MOST_KG_M2)?);
+    Ok(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
+}
+
 /// A checked robot, from which a [`Compensator`](crate::Compensator) is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotParams<'a> {
     pub(crate) cycle_s: f64,
     pub(crate) mass_kg: f64,
     pub(crate) center_of_mass_m: Vector3<f64>,
+    pub(crate) inertia_kg_m2: Matrix3<f64>,
     pub(crate) gravity_m_per_s2: Vector3<f64>,
     pub(crate) monitor: MonitorOptions,
     pub(crate) known_reference: Option<KnownReference>,
@@ -126,6 +145,7 @@ impl<'a> RobotParams<'a> {
             cycle_s,
             mass_kg: check("mass_kg", platform.mass_kg, 0.0, 1e6)?,
             center_of_mass_m: check_point("center_of_mass_m", platform.center_of_mass_m)?,
+            inertia_kg_m2: check_inertia(platform.inertia_kg_m2)?,
             gravity_m_per_s2: check_point("gravity_m_per_s2", platform.gravity_m_per_s2)?,
             monitor: MonitorOptions { length_jump_m, length_noise_m, ..monitor },
             known_reference: None,
@@ -171,6 +191,13 @@ impl<'a> RobotParams<'a> {
     #[must_use]
     pub fn center_of_mass_m(&self) -> Vector3<f64> {
         self.center_of_mass_m
+    }
+
+    /// Returns the inertia tensor of the platform about its centre of mass, platform axes, kg m². The cycle does not use it: the wrench that it returns
+    /// includes the inertia.
+    #[must_use]
+    pub fn inertia_kg_m2(&self) -> Matrix3<f64> {
+        self.inertia_kg_m2
     }
 
     /// Returns gravity, base frame, m/s².

@@ -30,6 +30,8 @@ pub struct WrenchGap {
     pub alike: Vec<&'static str>,
     /// Entries of the robot file that are wrong.
     pub geometry: Vec<GeometryResult>,
+    /// Fitted inertia tensor about the centre of mass, kg m², xx, xy, xz, yy, yz, zz, if the wrench is that of the mass and the log determines it.
+    pub inertia_kg_m2: Option<[f64; 6]>,
     /// Findings for all cables together that help but do not suffice.
     pub tried: Vec<TriedTogether>,
     /// Whether something is left that no error of one cable's force accounts for.
@@ -103,6 +105,7 @@ impl WrenchGap {
             reference: found.reference.name(),
             verdict: found.verdict.name(),
             is_of_no_cable: found.is_of_no_cable,
+            inertia_kg_m2: found.inertia_kg_m2,
             before: WrenchError::of(&found.before.errors),
             after: WrenchError::of(&found.after.errors),
             noise_floor: WrenchError { force_rms_n: length(force), torque_rms_nm: length(torque) },

@@ -47,9 +47,22 @@ impl WrenchGap {
                 [after, self.noise_floor].map(|of| format!("{:.4} N and {:.4} Nm", of.force_rms_n, of.torque_rms_nm));
             format!("Of the wrench {after} are left, where the noise is {noise}.")
         });
+        let inertia = self.inertia_kg_m2.map(|[xx, _, _, yy, _, zz]| {
+            format!(
+                "Fitted with the friction: the platform's moments of inertia, {xx:.3}, {yy:.3} and {zz:.3} kg m² (inertia_kg_m2 in \
+                 the robot file)."
+            )
+        });
         let from_outside =
             self.is_of_no_cable.then(|| format!("No error of one cable's force accounts for it. {FROM_OUTSIDE}"));
-        alike.chain(self.corrections()).chain(scale).chain(tried).chain(rest).chain(from_outside).collect()
+        alike
+            .chain(self.corrections())
+            .chain(scale)
+            .chain(inertia)
+            .chain(tried)
+            .chain(rest)
+            .chain(from_outside)
+            .collect()
     }
 }
 
@@ -79,6 +92,7 @@ mod tests {
     fn gap(reference: WrenchReference, geometry: Vec<GeometryResult>) -> WrenchGap {
         WrenchGap {
             is_of_no_cable: false,
+            inertia_kg_m2: None,
             reference: reference.name(),
             verdict: "extended",
             before: None,

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use fric_core::effects::Effect;
 use fric_core::parameters::Values;
-use nalgebra::{DMatrix, Matrix6, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 
 use super::geometry::{Changes, Description, Geometry};
 use crate::certainty::scores::Scores;
@@ -223,6 +223,8 @@ impl<'a> Bench<'a> {
     /// Returns the prior mean and standard deviation of a number; `None` for parameters of effects.
     fn expected(&self, unknown: &Unknown) -> Option<(f64, f64)> {
         match unknown {
+            // Of a tensor a log with few axes of rotation shows a part, and a narrow prior would pass for knowledge of the rest.
+            Unknown::Geometry(of @ Geometry::Inertia, _) => Some((0.0, self.description.size(*of))),
             Unknown::Geometry(of, _) => Some((0.0, GEOMETRY_RATIO * self.description.size(*of))),
             Unknown::Own(cable, of) if of.effect().is_none() => {
                 let given = self.records.get(*cable)?.params.values()[of.place()];
@@ -398,6 +400,10 @@ impl<'a> Bench<'a> {
         let inverse = inverse_of_normal(&matrix)?;
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let variance = squares / (6.0 * self.count(false) as f64);
-        Some([scores.covariance(&inverse), inverse * variance])
+        // What is expected is an observation as well; without it, a number that nothing else determines would have no error at all.
+        let information = |unknown: &Unknown| self.expected(unknown).map_or(0.0, |(_, scale)| scale.powi(-2));
+        let expected = DVector::from_iterator(matrix.nrows(), model.unknowns().iter().map(information));
+        let of_expected = &inverse * DMatrix::from_diagonal(&expected) * &inverse;
+        Some([scores.covariance(&inverse) + of_expected, inverse * variance])
     }
 }

@@ -1,7 +1,8 @@
 //! Errors of the robot file in the platform and the geometry of the cables, as candidates beside the effects. Otherwise they would be named friction.
 //!
 //! In `A^T f + w = 0` (\[P\] 3) the structure matrix `A^T` depends on the points where cables enter their last pulleys and where they are attached.
-//! If the outside wrench `w` is computed from weight and inertia, it depends on mass, centre of mass and gravity; a measured wrench does not.
+//! If the outside wrench `w` is computed from weight and inertia, it depends on mass, centre of mass, inertia tensor and gravity; a measured wrench
+//! does not.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -9,10 +10,11 @@ use std::collections::BTreeMap;
 use fric_core::robot::RobotParams;
 use fric_core::robot::edit::PlatformEdit;
 use fric_core::{CableParams, Pose};
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 
 use crate::fit::CableRecord;
 use crate::replay::WrenchReference;
+use crate::weight::{Body, Motion};
 
 /// An entry of the robot file that may be wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,6 +23,9 @@ pub enum Geometry {
     Mass,
     /// Its centre of mass.
     CenterOfMass,
+    /// Its inertia tensor about the centre of mass. It is no candidate, but fitted with the friction: few files state it, every platform has one, and what it
+    /// explains is no evidence for anything else.
+    Inertia,
     /// Direction of gravity in the base frame.
     Gravity,
     /// The point where the cable of this index enters its last pulley.
@@ -29,7 +34,7 @@ pub enum Geometry {
     Attachment(usize),
 }
 
-/// Corrections of entries: kg, m, and for gravity two components perpendicular to the given one, m/s².
+/// Corrections of entries: kg, m, kg m², and for gravity two components perpendicular to the given one, m/s².
 pub type Changes = BTreeMap<Geometry, Vec<f64>>;
 
 /// One vector per sample, or per sample and cable: borrowed if unchanged.
@@ -54,6 +59,7 @@ impl Geometry {
         match self {
             Self::Mass => "mass_kg",
             Self::CenterOfMass => "center_of_mass_m",
+            Self::Inertia => "inertia_kg_m2",
             Self::Gravity => "gravity_m_per_s2",
             Self::Base(_) => "base_m",
             Self::Attachment(_) => "platform_m",
@@ -65,7 +71,7 @@ impl Geometry {
     pub const fn cable(self) -> Option<usize> {
         match self {
             Self::Base(cable) | Self::Attachment(cable) => Some(cable),
-            Self::Mass | Self::CenterOfMass | Self::Gravity => None,
+            Self::Mass | Self::CenterOfMass | Self::Inertia | Self::Gravity => None,
         }
     }
 
@@ -75,6 +81,7 @@ impl Geometry {
         match self {
             Self::Mass => &["mass_kg"],
             Self::CenterOfMass | Self::Base(_) | Self::Attachment(_) => &["x_m", "y_m", "z_m"],
+            Self::Inertia => &["xx_kg_m2", "xy_kg_m2", "xz_kg_m2", "yy_kg_m2", "yz_kg_m2", "zz_kg_m2"],
             Self::Gravity => &["x_m_per_s2", "y_m_per_s2", "z_m_per_s2"],
         }
     }
@@ -85,6 +92,7 @@ impl Geometry {
         match self {
             Self::Mass => 1,
             Self::Gravity => 2,
+            Self::Inertia => 6,
             Self::CenterOfMass | Self::Base(_) | Self::Attachment(_) => 3,
         }
     }
@@ -96,6 +104,8 @@ pub struct Description<'a> {
     pub robot: &'a RobotParams<'a>,
     pub reference: WrenchReference,
     pub poses: &'a [Option<Pose>],
+    /// The motion of the platform in each sample; empty if the wrench is measured.
+    pub motions: &'a [Option<Motion>],
     /// Columns of the structure matrix: all cables of a sample, one sample after the other.
     pub structure: &'a [Vector6<f64>],
     /// The outside wrench of each sample; NaN where there is none.
@@ -103,12 +113,20 @@ pub struct Description<'a> {
 }
 
 impl<'a> Description<'a> {
-    /// Returns all entries that may be wrong.
+    /// Returns the entries that may be wrong.
     pub fn candidates(&self) -> Vec<Geometry> {
         let of_platform = [Geometry::Mass, Geometry::CenterOfMass, Geometry::Gravity];
         let of_cables = (0..self.count()).flat_map(|cable| [Geometry::Base(cable), Geometry::Attachment(cable)]);
         let is_known = self.reference == WrenchReference::Mass;
         of_platform.into_iter().filter(|_| is_known).chain(of_cables).collect()
+    }
+
+    /// Returns the corrections that are fitted with the friction: of the inertia tensor, if the wrench depends on it.
+    pub fn fitted(&self) -> Changes {
+        let of = Geometry::Inertia;
+        let mut motions = self.motions.iter().flatten();
+        let is_turned = motions.any(|motion| motion.angular_acceleration_rad_per_s2.norm() > 0.0);
+        (is_turned && self.size(of) > 0.0).then(|| (of, vec![0.0; of.count()])).into_iter().collect()
     }
 
     fn count(&self) -> usize {
@@ -124,8 +142,13 @@ impl<'a> Description<'a> {
             columns.zip(self.poses).for_each(|(column, pose)| *column = column_of(&moved, pose.as_ref()));
         }
         if changes.keys().any(|of| of.cable().is_none()) {
-            let wrenches = outside.to_mut().iter_mut().zip(self.poses);
-            wrenches.for_each(|(wrench, pose)| *wrench = self.wrench(*wrench, pose.as_ref(), changes));
+            let body = self.body(changes);
+            let samples = outside.to_mut().iter_mut().zip(self.poses.iter().zip(self.motions));
+            for (wrench, (pose, motion)) in samples {
+                if let Some((pose, motion)) = pose.zip(*motion) {
+                    *wrench = body.wrench(&pose.orientation, &motion).to_vector();
+                }
+            }
         }
         (structure, outside)
     }
@@ -141,15 +164,14 @@ impl<'a> Description<'a> {
         params.with_geometry(shifted(params.base_m()?, base), shifted(params.platform_m()?, attachment))
     }
 
-    /// Returns the outside wrench with corrected mass, centre of mass and gravity.
-    fn wrench(&self, given: Vector6<f64>, pose: Option<&Pose>, changes: &Changes) -> Vector6<f64> {
-        let Some(pose) = pose else { return given };
-        let given_n: Vector3<f64> = given.fixed_rows::<3>(0).into();
-        let mass_kg = self.mass_kg(changes);
-        let acceleration_m_per_s2 = self.robot.gravity_m_per_s2() - given_n / self.robot.mass_kg();
-        let force_n = (self.gravity_m_per_s2(changes) - acceleration_m_per_s2) * mass_kg;
-        let torque_nm = (pose.orientation * self.center_of_mass_m(changes)).cross(&force_n);
-        Vector6::new(force_n.x, force_n.y, force_n.z, torque_nm.x, torque_nm.y, torque_nm.z)
+    /// Returns the platform with corrected entries.
+    fn body(&self, changes: &Changes) -> Body {
+        Body {
+            mass_kg: self.mass_kg(changes),
+            center_of_mass_m: self.center_of_mass_m(changes),
+            inertia_kg_m2: self.inertia_kg_m2(changes),
+            gravity_m_per_s2: self.gravity_m_per_s2(changes),
+        }
     }
 
     fn mass_kg(&self, changes: &Changes) -> f64 {
@@ -160,6 +182,18 @@ impl<'a> Description<'a> {
     fn center_of_mass_m(&self, changes: &Changes) -> Vector3<f64> {
         let by_m = changes.get(&Geometry::CenterOfMass).map(Vec::as_slice);
         shifted(self.robot.center_of_mass_m(), by_m).into()
+    }
+
+    /// Returns the corrected inertia tensor. A moment that the samples hardly determine may come out below 0 and is then 0.
+    fn inertia_kg_m2(&self, changes: &Changes) -> Matrix3<f64> {
+        let given = self.robot.inertia_kg_m2();
+        let by = changes.get(&Geometry::Inertia).and_then(|by| by.first_chunk::<6>());
+        let Some([xx, xy, xz, yy, yz, zz]) = by.copied() else { return given };
+        let mut tensor = given + Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        for place in 0..3 {
+            tensor[(place, place)] = tensor[(place, place)].max(0.0);
+        }
+        tensor
     }
 
     /// Returns gravity in its corrected direction; its magnitude stays.
@@ -179,6 +213,7 @@ impl<'a> Description<'a> {
         let point = match of {
             Geometry::Mass => return vec![self.mass_kg(changes)],
             Geometry::CenterOfMass => Some(self.center_of_mass_m(changes)),
+            Geometry::Inertia => return entries(&self.inertia_kg_m2(changes)).to_vec(),
             Geometry::Gravity => Some(self.gravity_m_per_s2(changes)),
             Geometry::Base(of) => cable(of).and_then(|params| params.base_m()),
             Geometry::Attachment(of) => cable(of).and_then(|params| params.platform_m()),
@@ -192,6 +227,7 @@ impl<'a> Description<'a> {
         PlatformEdit {
             mass_kg: has(Geometry::Mass).then(|| self.mass_kg(changes)),
             center_of_mass_m: has(Geometry::CenterOfMass).then(|| self.center_of_mass_m(changes).into()),
+            inertia_kg_m2: has(Geometry::Inertia).then(|| entries(&self.inertia_kg_m2(changes))),
             gravity_m_per_s2: has(Geometry::Gravity).then(|| self.gravity_m_per_s2(changes).into()),
         }
     }
@@ -219,11 +255,13 @@ impl<'a> Description<'a> {
                 };
                 return self.poses.iter().enumerate().map(change).collect();
             }
-            let change = |(wrench, pose): (&Vector6<f64>, &Option<Pose>)| {
-                let of = |changes: &Changes| self.wrench(*wrench, pose.as_ref(), changes);
-                (of(&beside) - of(&from)) / step
+            let (from, to) = (self.body(&from), self.body(&beside));
+            let change = |(pose, motion): (&Option<Pose>, &Option<Motion>)| {
+                let Some((pose, motion)) = pose.zip(*motion) else { return Vector6::repeat(f64::NAN) };
+                let of = |body: &Body| body.wrench(&pose.orientation, &motion).to_vector();
+                (of(&to) - of(&from)) / step
             };
-            self.outside.iter().zip(self.poses).map(change).collect()
+            self.poses.iter().zip(self.motions).map(change).collect()
         };
         (0..of.count()).map(tangent).collect()
     }
@@ -233,8 +271,17 @@ impl<'a> Description<'a> {
         match of {
             Geometry::Mass => self.robot.mass_kg(),
             Geometry::Gravity => self.robot.gravity_m_per_s2().norm(),
+            Geometry::Inertia => (self.robot.mass_kg() * self.arm_square_m2()).max(self.robot.inertia_kg_m2().norm()),
             Geometry::CenterOfMass | Geometry::Base(_) | Geometry::Attachment(_) => 1.0,
         }
+    }
+
+    /// Returns the mean square distance of the attachments from the centre of mass.
+    fn arm_square_m2(&self) -> f64 {
+        let points = self.robot.cables().iter().filter_map(CableParams::platform_m);
+        let square_m2 = |point: Vector3<f64>| (point - self.robot.center_of_mass_m()).norm_squared();
+        let (sum, count) = points.fold((0.0, 0.0), |(sum, count), point| (sum + square_m2(point), count + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
     }
 
     /// Whether the lengths of the log contradict the correction of a cable's point: with it they differ from those of the poses by far more than without. A
@@ -258,10 +305,11 @@ impl<'a> Description<'a> {
         of == Geometry::Mass && self.mass_kg(changes) < LEAST_MASS_RATIO * self.robot.mass_kg()
     }
 
-    /// Returns the usual error of an entry's numbers: the whole mass, because of payloads; 1° of the vertical; 10 mm of a point.
+    /// Returns the usual error of an entry's numbers: the whole mass, because of payloads; the whole inertia, which few files state; 1° of the vertical;
+    /// 10 mm of a point.
     pub fn usual(&self, of: Geometry) -> f64 {
         let ratio = match of {
-            Geometry::Mass => 1.0,
+            Geometry::Mass | Geometry::Inertia => 1.0,
             Geometry::Gravity => 1_f64.to_radians(),
             Geometry::CenterOfMass | Geometry::Base(_) | Geometry::Attachment(_) => 0.01,
         };
@@ -294,6 +342,11 @@ fn length_variance_m2(params: &CableParams, record: &CableRecord<'_>, poses: &[O
         end([sum, sum_of_squares, count]);
     }
     (total > 0.0).then(|| squares / total)
+}
+
+/// Returns the entries of a symmetric tensor in the order of the robot file.
+fn entries(tensor: &Matrix3<f64>) -> [f64; 6] {
+    [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|place| tensor[place])
 }
 
 fn shifted(point: Vector3<f64>, by: Option<&[f64]>) -> [f64; 3] {

@@ -25,7 +25,7 @@ use nalgebra::{Matrix6, Vector6};
 
 use self::bench::{Bench, Trial};
 use self::covariance::{reweighted, whitening};
-use self::geometry::{Changes, Description};
+use self::geometry::Description;
 use self::naming::{Naming, Search};
 use self::sensors::Sensors;
 use super::cable::acts;
@@ -37,6 +37,7 @@ use crate::fit::wrench::{ReferenceWrenches, first_model};
 use crate::fit::{CableRecord, FitError, Measurements, Progress, Stages};
 use crate::replay::{WrenchErrors, WrenchReference};
 use crate::samples::split::split;
+use crate::search::solve::{GROSS_CONTRADICTION, Unknown};
 
 pub use geometry::Geometry;
 
@@ -67,6 +68,8 @@ pub struct WrenchDiscovery {
     pub geometry: Vec<GeometryFinding>,
     /// Candidates of all cables or of the robot file that help but do not suffice: names, the cable whose entry it is, and reasons.
     pub tried: Vec<(String, Option<usize>, Refusal)>,
+    /// The fitted inertia tensor in the order of the file's key, if the log determines it.
+    pub inertia_kg_m2: Option<[f64; 6]>,
     edits: Edits,
 }
 
@@ -115,6 +118,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         robot: measurements.robot(),
         reference: references.kind,
         poses: measurements.poses(),
+        motions: &references.motions,
         structure: measurements.structure(),
         outside: &references.outside,
     };
@@ -127,7 +131,8 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         whitening: Matrix6::identity(),
         stop: progress.stop_flag(),
     };
-    let given = bench::Model { values: first.values, free: first.free, alike: Vec::new(), changes: Changes::new() };
+    let given =
+        bench::Model { values: first.values, free: first.free, alike: Vec::new(), changes: bench.description.fitted() };
     bench.whitening = whitening(&bench, &given).ok_or_else(too_short)?;
     let base = bench.fit(&given, AT_MINIMUM);
     let nothing = Naming::start(base.clone(), &bench.whitening, Vec::new());
@@ -178,7 +183,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         faults: &sensors.faults,
         times_s: measurements.times_s(),
     }
-    .report(covariances.map(|[covariance, _]| covariance))
+    .report(covariances)
 }
 
 /// Returns what a chain of searches names that begins with some names.
@@ -202,16 +207,23 @@ fn searched<'a>(
     Ok(naming)
 }
 
-/// Returns a model in which friction that the samples do not determine beside the names has its given values and is not varied.
+/// Returns a model in which friction that the samples do not determine beside the names has its given values and is not varied, unless the samples
+/// contradict these.
 fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
     let (_, all) = bench.with_problem(model, bench.used(false), |problem| {
         crate::certainty::undetermined::vagueness(problem, &model.values)
     });
     let mut held = model.clone();
-    for (_, of) in all.into_iter().filter(|(vagueness, of)| *vagueness > 1.0 && of.parameter.effect().is_none()) {
+    let most = GROSS_CONTRADICTION * bench.judged(model.clone()).training;
+    let is_vague = |(vagueness, of): &(f64, Unknown)| *vagueness > 1.0 && of.parameter.effect().is_none();
+    for (_, of) in all.into_iter().filter(is_vague) {
         let place = of.parameter.place();
-        held.free[of.member].retain(|free| *free != of.parameter);
-        held.values[of.member][place] = bench.records[of.member].params.values()[place];
+        let mut given = held.clone();
+        given.values[of.member][place] = bench.records[of.member].params.values()[place];
+        if bench.judged(given.clone()).training <= most {
+            given.free[of.member].retain(|free| *free != of.parameter);
+            held = given;
+        }
     }
     held
 }

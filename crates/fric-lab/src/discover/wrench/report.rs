@@ -9,6 +9,7 @@ use super::candidate::Candidate;
 use super::geometry::Geometry;
 use super::naming::{Named, Naming};
 use super::{Edits, GeometryFinding, WrenchDeviation, WrenchDiscovery, too_short};
+use crate::certainty::determined::HALF_INTERVAL;
 use crate::discover::cable::BELIEVED_RATIO;
 use crate::discover::faults::RecordingFault;
 use crate::discover::figures::curve::curves;
@@ -41,20 +42,20 @@ pub struct Case<'b, 'a> {
 }
 
 impl Case<'_, '_> {
-    /// Returns the result. Without a covariance of the extended model's unknowns, none of them counts as determined.
+    /// Returns the result from the covariances of the extended model's unknowns ([`Bench::covariances`]). Without them, none counts as determined.
     ///
     /// # Errors
     /// [`FitError`] if the log is too short to estimate the noise.
-    pub fn report(&self, covariance: Option<DMatrix<f64>>) -> Result<WrenchDiscovery, FitError> {
+    pub fn report(&self, covariances: Option<[DMatrix<f64>; 2]>) -> Result<WrenchDiscovery, FitError> {
         let Self { bench, base, naming, fitted, .. } = *self;
         let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
         let noise = plain.noise(&fitted.model).ok_or_else(too_short)?;
         let held_out = bench.used(true);
         let deviation = |trial: &Trial| WrenchDeviation::of(&plain.deviations(&trial.model), &held_out);
         let (before, after) = (deviation(base), deviation(fitted));
-        let covariance = covariance.unwrap_or_else(|| {
+        let [covariance, independent] = covariances.unwrap_or_else(|| {
             let count = fitted.model.unknowns().len();
-            DMatrix::from_element(count, count, f64::INFINITY)
+            [(); 2].map(|()| DMatrix::from_element(count, count, f64::INFINITY))
         });
         let cables: Vec<CableDiscovery> =
             (0..bench.records.len()).map(|cable| self.cable(cable, &covariance)).collect();
@@ -87,8 +88,12 @@ impl Case<'_, '_> {
             numbers.and_then(|numbers| numbers.first_chunk::<3>().copied())
         };
         let count = bench.records.len();
+        let mut platform = description.platform_edit(changes);
+        platform.inertia_kg_m2 =
+            platform.inertia_kg_m2.filter(|_| self.is_tensor_determined(&covariance, &independent));
+        let inertia_kg_m2 = platform.inertia_kg_m2;
         let edits = Edits {
-            platform: description.platform_edit(changes),
+            platform,
             base_m: (0..count).map(|cable| point(Geometry::Base(cable))).collect(),
             platform_m: (0..count).map(|cable| point(Geometry::Attachment(cable))).collect(),
         };
@@ -107,9 +112,30 @@ impl Case<'_, '_> {
             alike: alike.collect(),
             geometry,
             tried: tried.collect(),
+            inertia_kg_m2,
             edits,
             cables,
         })
+    }
+
+    /// Whether every moment of the fitted inertia tensor is known to within half of it, as it is asked of a parameter: by its interval of 95 % and by the
+    /// greatest shift that an error of the friction could cause. Over few turns that is the greater part.
+    fn is_tensor_determined(&self, covariance: &DMatrix<f64>, independent: &DMatrix<f64>) -> bool {
+        let Self { bench, fitted, .. } = *self;
+        let model = &fitted.model;
+        #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+        let samples = bench.count(false) as f64;
+        let believed = bench.believed_wrench(model, BELIEVED_RATIO, &vec![0.0; bench.records.len()]);
+        let shift = (samples * believed.iter().map(|error| error * error).sum::<f64>()).sqrt();
+        let tensor = bench.description.corrected(Geometry::Inertia, &model.changes);
+        let is_known = |(column, unknown): (usize, Unknown)| match unknown {
+            Unknown::Geometry(Geometry::Inertia, number @ (0 | 3 | 5)) => {
+                let [error, scale] = [covariance, independent].map(|of| of[(column, column)].sqrt());
+                tensor.get(number).is_some_and(|moment| HALF_INTERVAL * error + shift * scale < 0.5 * moment)
+            }
+            _ => true,
+        };
+        model.unknowns().into_iter().enumerate().all(is_known)
     }
 
     /// Returns the result of one cable.

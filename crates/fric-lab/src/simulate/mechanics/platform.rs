@@ -1,19 +1,17 @@
 //! The simulated platform: the wrench on it and the directions of its cables.
 //!
-//! Newton-Euler about the platform origin reads `A^T f + w = 0` with `w = m·[g − a; R c × (g − a)]`, where a is the acceleration of the origin and c
-//! the centre of mass (\[P\] 2, with gravity and inertia in w). Rotation is quasi-static: the robot file has no inertia tensor, so the terms of
-//! angular acceleration and of the centripetal acceleration of the centre of mass are omitted. The equation is exact while the platform does not
-//! rotate.
+//! Newton-Euler about the platform origin reads `A^T f + w = 0` (\[P\] 2, with gravity and inertia in w; [`Body::wrench`]).
 
 use fric_core::{CableParams, Pose, RobotParams, Wrench};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
+use crate::trajectory::SetPoint;
+use crate::weight::{Body, Motion};
+
 /// Mass, attachment points and cables; cables without geometry are left out.
 #[derive(Clone, Debug)]
 pub struct Platform {
-    mass_kg: f64,
-    center_of_mass_m: Vector3<f64>,
-    gravity_m_per_s2: Vector3<f64>,
+    body: Body,
     cables: Vec<Attached>,
 }
 
@@ -30,12 +28,7 @@ impl Platform {
             let (base_m, platform_m) = cable.base_m().zip(cable.platform_m())?;
             Some(Attached { params: *cable, base_m, platform_m })
         });
-        Self {
-            mass_kg: robot.mass_kg(),
-            center_of_mass_m: robot.center_of_mass_m(),
-            gravity_m_per_s2: robot.gravity_m_per_s2(),
-            cables: cables.collect(),
-        }
+        Self { body: Body::of(robot), cables: cables.collect() }
     }
 
     /// Returns the number of attached cables.
@@ -45,12 +38,12 @@ impl Platform {
 
     /// Returns the weight, N.
     pub fn weight_n(&self) -> f64 {
-        self.mass_kg * self.gravity_m_per_s2.norm()
+        self.body.mass_kg * self.body.gravity_m_per_s2.norm()
     }
 
     /// Returns the unit vector of gravity; downwards if there is none.
     pub fn down(&self) -> Vector3<f64> {
-        self.gravity_m_per_s2.try_normalize(1e-9).unwrap_or_else(|| -Vector3::z())
+        self.body.gravity_m_per_s2.try_normalize(1e-9).unwrap_or_else(|| -Vector3::z())
     }
 
     /// Returns the root mean square distance of the attachments from the platform origin, m.
@@ -86,14 +79,29 @@ impl Platform {
         true
     }
 
-    /// Returns the wrench of gravity and inertia at an orientation and an acceleration of the platform.
+    /// Returns the wrench of gravity and inertia at an orientation and an acceleration of the platform that does not turn.
     pub fn outside_wrench(
         &self,
         orientation: &UnitQuaternion<f64>,
         acceleration_m_per_s2: &Vector3<f64>,
     ) -> Vector6<f64> {
-        let force_n = (self.gravity_m_per_s2 - acceleration_m_per_s2) * self.mass_kg;
-        stack(&force_n, &(orientation * self.center_of_mass_m).cross(&force_n))
+        let motion = Motion { acceleration_m_per_s2: *acceleration_m_per_s2, ..Motion::default() };
+        self.body.wrench(orientation, &motion).to_vector()
+    }
+
+    /// Returns the wrench of gravity and inertia at a set point.
+    pub fn wrench_at(&self, set_point: &SetPoint) -> Vector6<f64> {
+        let lever_m = set_point.orientation * self.body.center_of_mass_m;
+        let (velocity, acceleration) =
+            (set_point.angular_velocity_rad_per_s, set_point.angular_acceleration_rad_per_s2);
+        let motion = Motion {
+            acceleration_m_per_s2: set_point.acceleration_m_per_s2
+                + acceleration.cross(&lever_m)
+                + velocity.cross(&velocity.cross(&lever_m)),
+            angular_velocity_rad_per_s: velocity,
+            angular_acceleration_rad_per_s2: acceleration,
+        };
+        self.body.wrench(&set_point.orientation, &motion).to_vector()
     }
 }
 

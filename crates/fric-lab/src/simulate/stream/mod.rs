@@ -350,7 +350,7 @@ impl Simulation {
         if let (Tension::Platform { level, distribution, .. }, Some(set_point)) = (&mut self.tension, platform) {
             let pose = set_point.pose();
             self.platform.structure(&pose, &mut self.columns);
-            let mut wrench = self.platform.outside_wrench(&set_point.orientation, &set_point.acceleration_m_per_s2);
+            let mut wrench = self.platform.wrench_at(set_point);
             for (axis_n, push) in wrench.iter_mut().zip(&self.pushes) {
                 *axis_n += pushed_n(push);
             }
