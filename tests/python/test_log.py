@@ -110,6 +110,24 @@ def test_a_log_in_arrays_is_replayed_to_the_same_bits(robot, log):
         assert np.array_equal(other.outside_wrench, expected.outside_wrench, equal_nan=True)
 
 
+@pytest.mark.parametrize(
+    ("key", "stated"),
+    [("reference", {"constant_n": 9.0}), ("reference", {"hanging_mass_kg": 1.0}), ("pose", "lengths")],
+)
+def test_arrays_have_what_the_robot_file_states(log, key, stated):
+    robot = fric.Robot.read(ROBOT)
+    setattr(robot.log, key, stated)
+    measured = {"reference": "reference_force_n", "pose": "position_m"}
+    arrays = {name: array for name, array in arrays_of(log).items() if name != measured[key]}
+    if key == "pose":
+        del arrays["orientation_xyzw"]
+    made = fric.replay(robot, fric.Log.from_arrays(cable_names=robot.cable_names, **arrays))
+    read = fric.replay(robot, LOG)
+    assert made.cables == read.cables and made.wrench == read.wrench
+    assert read.cables[0].after is not None
+    assert np.array_equal(made.outside_wrench, read.outside_wrench, equal_nan=True)
+
+
 def test_a_simulation_has_the_bits_of_the_command_line(tmp_path, robot):
     path = tmp_path / "log.mcap"
     effect = "stribeck:ratio=0.5,velocity_m_per_s=0.02"

@@ -201,7 +201,22 @@ fn bad_files() -> Vec<Bad> {
         bad("per_pulley\"", "per_puley\"", 20, &["`per_puley`", "did you mean `per_pulley`?", "`presliding`"]),
         bad("wrap = \"pose\"", "wrap = \"poses\"", 24, &["`poses`", "did you mean `pose`?", "`wrap`"]),
         bad("mu = 0.019", "zzz = 1.0", 26, &["`zzz`", "`viscous_n_s_per_m`"]),
+        // A list of the values of a table has no stated order.
+        bad(
+            "{ mu = 0.019, sigma_n_per_m = 950.0, viscous_n_s_per_m = 0.5, offset_n = 0.0 }",
+            "[0.019]",
+            26,
+            &["`friction`", "table"],
+        ),
+        bad("{ wrap_deg = 90.0 }", "[90.0]", 23, &["`pulleys`", "table"]),
         // Values out of range, and what is no number.
+        bad(
+            "mass_kg = 0.41",
+            "inertia_kg_m2 = [-1.0, 0.0, 0.0, 1.0, 0.0, 1.0]",
+            6,
+            &["`inertia_kg_m2`", "is -1;", "0 to 1e9"],
+        ),
+        bad("mass_kg = 0.41", "inertia_kg_m2 = [1.0, 1.0, 1.0]", 6, &["`inertia_kg_m2`", "6"]),
         bad("cycle_s = 0.001", "cycle_s = 0.0", 3, &["`cycle_s`", "is 0;", "1e-6 to 10"]),
         bad("cycle_s = 0.001", "cycle_s = nan", 3, &["`cycle_s`", "NaN", "not a finite number"]),
         bad("mass_kg = 0.41", "mass_kg = -1.0", 6, &["`mass_kg`", "is -1;", "0 to 1000000"]),

@@ -10,7 +10,7 @@ use fric_core::robot::unknown_name;
 use fric_lab::columns::{SampleColumns, SampleRows};
 use fric_log::log::Log as LogSource;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
-use fric_log::signals::{LengthWindow, Role, SignalPaths, SignalReader};
+use fric_log::signals::{LengthWindow, Role, SignalPaths, SignalReader, StatedSignals};
 use fric_work::verdict::counted;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyTypeError};
@@ -332,8 +332,34 @@ impl Log {
         })
     }
 
+    /// Returns a log of arrays with the signals that a robot's file states in place of measured ones; `None` if there are none, or if it was read, and
+    /// so has them.
+    fn with_stated(&self, py: Python<'_>, robot: &Robot) -> Outcome<Option<Self>> {
+        let stated = StatedSignals::of(&SignalPaths::of_robot(&robot.file)?).filter(|_| self.robot.is_none());
+        let Some(mut stated) = stated else { return Ok(None) };
+        let (mut columns, mut cables) = (SampleColumns::default(), Vec::new());
+        self.with_rows(py, |rows| {
+            for row in 0..rows.len() {
+                let Some(sample) = rows.sample(row, &mut cables) else { break };
+                stated.push(&sample);
+                while let Some(sample) = stated.next_sample() {
+                    columns.push(&sample);
+                }
+            }
+            stated.end();
+            while let Some(sample) = stated.next_sample() {
+                columns.push(&sample);
+            }
+            Ok(())
+        })?;
+        warn(py, &stated.length_poses().map_or_else(Vec::new, |poses| poses.warnings()))?;
+        let names: Vec<&str> = self.cable_names.iter().map(String::as_str).collect();
+        let stated = Self::new(py, columns, &names, None, self.sources.clone())?;
+        Ok(Some(Self { origin: Arc::clone(&self.origin), ..stated }))
+    }
+
     /// Checks that the columns are a robot's cables, and that there are rows.
-    pub fn check_usable(&self, py: Python<'_>, names: &[&str]) -> Outcome {
+    fn check_usable(&self, py: Python<'_>, names: &[&str]) -> Outcome {
         if self.cable_names == names {
             let advice = "check its file, or the times by which it was cut";
             return match self.__len__(py)? {
@@ -370,9 +396,26 @@ pub fn read_log(
     read(py, "paths", paths, robot.as_ref(), None, &mut Watch::new(py, progress)?)
 }
 
+/// Returns the log of an argument for a robot: one that was read, one of arrays with what the robot's file states, or the log at its paths; see [`read`].
+pub fn of<'py>(
+    item: &Bound<'py, PyAny>,
+    robot: &Bound<'py, Robot>,
+    unread: Option<Role>,
+    watch: &mut Watch<'_>,
+) -> Outcome<Bound<'py, Log>> {
+    let py = robot.py();
+    let log = match item.cast::<Log>() {
+        Ok(log) => log.clone(),
+        Err(_) => Bound::new(py, read(py, "log", item, Some(robot), unread, watch)?)?,
+    };
+    let robot = robot.borrow();
+    log.get().check_usable(py, &robot.file.cable_names())?;
+    log.get().with_stated(py, &robot)?.map_or(Ok(log), |log| Ok(Bound::new(py, log)?))
+}
+
 /// Does the same as [`read_log`] for the paths of an argument, as a part of a longer call: for a fit, without the signal that it does not use, and without warnings that the fit
 /// gives itself.
-pub fn read(
+fn read(
     py: Python<'_>,
     argument: &str,
     paths: &Bound<'_, PyAny>,

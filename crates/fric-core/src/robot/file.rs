@@ -18,7 +18,7 @@ use thiserror::Error;
 use super::locate::{Line, Step, line_of, read_tables};
 use super::log_columns;
 pub use super::log_columns::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
-use super::read::{exactly, exactly_if_given};
+use super::read::{exactly, exactly_if_given, table, table_if_given, tables};
 pub use super::reference::{KnownReferenceTable, ReferenceTable};
 use super::{CableParams, MOST_CABLES, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
 use crate::effects::Effect;
@@ -42,15 +42,16 @@ pub struct RobotOptions {
     /// Cycle time, s.
     pub cycle_s: f64,
     /// Mass and gravity.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "table")]
     pub platform: PlatformTable,
     /// Location of the signals in a log.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "table")]
     pub log: LogTable,
     /// Limits beyond which a signal counts as faulty.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "table")]
     pub monitor: MonitorTable,
     /// The cables.
+    #[serde(deserialize_with = "tables")]
     pub cable: Vec<CableTable>,
 }
 
@@ -165,13 +166,15 @@ pub struct CableTable {
     #[serde(default)]
     pub presliding: PreslidingName,
     /// Pulleys from the winch to the platform.
+    #[serde(deserialize_with = "tables")]
     pub pulleys: Vec<PulleyTable>,
     /// Friction.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "table")]
     pub friction: FrictionTable,
     /// Friction coefficient between cable and pulley.
     pub traction_mu: Option<f64>,
     /// Range of the identification.
+    #[serde(default, deserialize_with = "table_if_given")]
     pub validated: Option<ValidatedTable>,
     /// Effects of the catalogue.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

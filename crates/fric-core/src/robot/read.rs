@@ -1,12 +1,62 @@
-//! Deserialisers where `serde`'s own are too lenient or report no position: number lists of fixed length, effects.
+//! Deserialisers where `serde`'s own are too lenient or report no position: tables, number lists of fixed length, effects.
 
 use core::fmt;
+use core::marker::PhantomData;
 use std::collections::BTreeMap;
 use std::string::String;
+use std::vec::Vec;
 
+use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 use super::file::EffectTable;
+
+/// A table: `serde`'s own structures also take a list of their values, in an order that no file states.
+///
+/// # Errors
+/// Of the deserializer, where there is no table.
+pub fn table<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    deserializer.deserialize_map(Table(PhantomData))
+}
+
+/// The same for a key that may be left out.
+///
+/// # Errors
+/// As [`table`].
+pub fn table_if_given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    table(deserializer).map(Some)
+}
+
+/// A list of tables.
+///
+/// # Errors
+/// As [`table`].
+pub fn tables<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    let entries = Vec::<Entry<T>>::deserialize(deserializer)?;
+    Ok(entries.into_iter().map(|Entry(table)| table).collect())
+}
+
+struct Entry<T>(T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entry<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        table(deserializer).map(Self)
+    }
+}
+
+struct Table<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for Table<T> {
+    type Value = T;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a table")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<T, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(table))
+    }
+}
 
 /// So many numbers and no more: `serde`'s own arrays pass over what is too much.
 ///

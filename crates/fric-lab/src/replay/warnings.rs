@@ -34,6 +34,7 @@ impl Replay {
             });
         }
         warnings.extend(self.cable_warnings(robot));
+        warnings.extend(self.motions.warnings(&robot.cable_names()));
         let set_ups = self.cables().iter().map(|cable| cable.set_up);
         warnings.extend(set_up::warnings(robot.cable_names().into_iter().zip(set_ups)));
         warnings

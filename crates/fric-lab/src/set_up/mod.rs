@@ -1,9 +1,11 @@
-//! What the forces of a run tell of its set-up: the scale of the sensor and the sign of the length, which are often wrong on the first day.
+//! What a run tells of its set-up: the scale of the sensor, sign and unit of length and speed, and the geometry, which are often wrong on the first day.
 
 mod direction;
+mod motion;
 mod scale;
 
 use direction::Direction;
+pub(crate) use motion::Motions;
 use scale::Scale;
 pub(crate) use scale::cause_of_gain;
 

@@ -10,6 +10,7 @@ use std::collections::VecDeque;
 
 use fric_core::{CableInput, KnownReference, Sample};
 
+use super::SignalPaths;
 use super::waiting::Row;
 
 /// Half the width of the window, and the minimum distance of rows for a difference.
@@ -42,8 +43,11 @@ struct Waiting {
 }
 
 impl HangingRows {
-    pub fn new(reference: KnownReference) -> Self {
-        Self { reference, rows: VecDeque::new(), next: 0, is_ended: false }
+    /// Returns an empty queue; `None` if no mass hangs on the cables.
+    pub fn of(paths: &SignalPaths) -> Option<Self> {
+        let is_mass = |known: &KnownReference| matches!(known, KnownReference::HangingMass { .. });
+        let reference = paths.known_reference().filter(is_mass)?;
+        Some(Self { reference, rows: VecDeque::new(), next: 0, is_ended: false })
     }
 
     /// Adds the next row.

@@ -6,6 +6,8 @@ use fric_core::forward::{FEWEST_CABLES, NoPose, PoseFollower};
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Pose};
 
+use super::SignalPaths;
+
 /// Residual relative to the lengths (both rms) above which a warning says that the lengths, or the geometry in the robot file, are wrong. At half
 /// this value, cables that sag or stretch by 0.05 % cause a warning; at double, 1 cm on one of eight cables of 1 m does not.
 const TOLD_RATIO: f64 = 1e-3;
@@ -34,8 +36,10 @@ pub struct LengthPoses {
 }
 
 impl PosesFromLengths {
-    pub fn new(robot: Arc<RobotFile>) -> Self {
-        Self { robot, follower: PoseFollower::default(), summary: LengthPoses::default() }
+    /// Returns the computation before the first row; `None` if the pose is read from the log.
+    pub fn of(paths: &SignalPaths) -> Option<Self> {
+        let robot = Arc::clone(paths.pose_robot()?);
+        Some(Self { robot, follower: PoseFollower::default(), summary: LengthPoses::default() })
     }
 
     /// Returns the pose of the next row, `None` if its lengths give none. Rows before the requested part are not counted.

@@ -53,6 +53,7 @@ mod part;
 mod reader;
 mod row;
 mod speed;
+mod stated;
 mod track;
 mod waiting;
 
@@ -63,6 +64,7 @@ pub use lengths::LengthPoses;
 pub use part::Part;
 pub use reader::SignalReader;
 pub use speed::LengthWindow;
+pub use stated::StatedSignals;
 pub use track::CLOCK_STEP_MESSAGES;
 
 use std::collections::BTreeMap;
@@ -146,6 +148,14 @@ impl SignalPaths {
     #[must_use]
     pub fn known_reference(&self) -> Option<KnownReference> {
         self.known_reference
+    }
+
+    /// Returns the known reference if it is the same in every row, N.
+    pub(self) fn constant_reference_n(&self) -> Option<f64> {
+        self.known_reference.and_then(|known| match known {
+            KnownReference::Constant { force_n } => Some(force_n),
+            KnownReference::HangingMass { .. } => None,
+        })
     }
 
     /// Lets the pose be computed from the cable lengths with the geometry of this robot, which replaces one in the log.

@@ -1,6 +1,6 @@
 //! The stream of rows.
 
-use fric_core::{KnownReference, Sample};
+use fric_core::Sample;
 
 use super::channel::{ChannelReader, Rejection};
 use super::error::SignalError;
@@ -116,9 +116,8 @@ impl SignalReader {
         let buffer = RowBuffer::new(topics.cable_names.len(), &topics.paths);
         let speeds = SpeedRows::new(topics.cable_names.len());
         let (channels, tracks) = (Vec::new(), Tracks::default());
-        let known = topics.paths.known_reference();
-        let length_poses = topics.paths.pose_robot().cloned().map(PosesFromLengths::new);
-        let hanging = known.filter(|known| matches!(known, KnownReference::HangingMass { .. })).map(HangingRows::new);
+        let length_poses = PosesFromLengths::of(&topics.paths);
+        let hanging = HangingRows::of(&topics.paths);
         Self {
             log,
             topics,

@@ -1,6 +1,6 @@
 //! The delivered row: the signals of one time, combined from the tracks.
 
-use fric_core::{KnownReference, Pose, Wrench};
+use fric_core::{Pose, Wrench};
 
 use super::track::{Around, Track, Tracked};
 use super::waiting::Row;
@@ -32,10 +32,7 @@ impl RowBuffer {
             row: Row::new(cable_count),
             has_length_path: paths.get(Role::Length).is_some(),
             has_speed_path: paths.get(Role::Speed).is_some(),
-            constant_n: paths.known_reference().and_then(|known| match known {
-                KnownReference::Constant { force_n } => Some(force_n),
-                KnownReference::HangingMass { .. } => None,
-            }),
+            constant_n: paths.constant_reference_n(),
             numbers: vec![f64::NAN; cable_count],
             poses: [KnownPose::default(); 2],
         }
@@ -53,9 +50,7 @@ impl RowBuffer {
         self.fill_cables(sample, length, speed);
         interpolate(reference, self.row.stamp_nanos, &mut self.row.reference_force_n);
         if let Some(constant_n) = self.constant_n {
-            for (reference_n, cable) in self.row.reference_force_n.iter_mut().zip(&self.row.cables) {
-                *reference_n = if cable.sensor_force_n.is_finite() { constant_n } else { f64::NAN };
-            }
+            self.row.set_reference(constant_n);
         }
         self.row.pose = pose.around(self.row.stamp_nanos).and_then(|around| self.pose_at(&around));
         self.row.outside_wrench = wrench.around(self.row.stamp_nanos).map(|around| {

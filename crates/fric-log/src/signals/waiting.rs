@@ -21,6 +21,23 @@ impl Row {
         }
     }
 
+    pub fn of(sample: &Sample<'_>) -> Self {
+        Self {
+            stamp_nanos: sample.stamp_nanos,
+            cables: sample.cables.to_vec(),
+            reference_force_n: sample.reference_force_n.to_vec(),
+            pose: sample.pose,
+            outside_wrench: sample.outside_wrench,
+        }
+    }
+
+    /// Sets the reference of every cable that has a sensor force.
+    pub fn set_reference(&mut self, force_n: f64) {
+        for (reference_n, cable) in self.reference_force_n.iter_mut().zip(&self.cables) {
+            *reference_n = if cable.sensor_force_n.is_finite() { force_n } else { f64::NAN };
+        }
+    }
+
     pub fn sample(&self) -> Sample<'_> {
         Sample {
             stamp_nanos: self.stamp_nanos,

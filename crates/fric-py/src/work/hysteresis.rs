@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::arguments::object;
 use crate::errors::Outcome;
-use crate::log::{self, Log};
+use crate::log;
 use crate::results;
 use crate::robot::Robot;
 use crate::watch::Watch;
@@ -31,12 +31,8 @@ pub fn hysteresis(
     let py = robot.py();
     let mut watch = Watch::new(py, progress)?;
     watch.part(0, 3);
-    let log = match log.cast::<Log>() {
-        Ok(log) => log.clone(),
-        Err(_) => Bound::new(py, log::read(py, "log", log, Some(robot), None, &mut watch)?)?,
-    };
+    let log = log::of(log, robot, None, &mut watch)?;
     let (log, file) = (log.get(), robot.borrow().file.clone());
-    log.check_usable(py, &file.cable_names())?;
     let mut survey = Survey::new(&file)?;
     let mut cables = Vec::new();
     watch.part(1, 3);

@@ -52,17 +52,16 @@ pub fn replay(
         return Err(Fault::output(format!("`output` is `{path}`, and {problem}")));
     }
     let mut watch = Watch::new(py, progress)?;
-    let log = if let Ok(log) = log.cast::<Log>() {
-        log.clone()
-    } else {
+    let is_read = log.is_instance_of::<Log>();
+    if !is_read {
         watch.part(0, 2);
-        let log = log::read(py, "log", log, Some(robot), None, &mut watch)?;
+    }
+    let log = log::of(log, robot, None, &mut watch)?;
+    if !is_read {
         watch.part(1, 2);
-        Bound::new(py, log)?
-    };
+    }
     let (log, file) = (log.get(), robot.borrow().file.clone());
     let names = file.cable_names();
-    log.check_usable(py, &names)?;
     let text = robot.borrow().to_toml()?;
     let create = |path: PathBuf| ReplayedLog::create(&path, &log.sources, force, &text, &names);
     let mut writer = output.map(create).transpose()?;

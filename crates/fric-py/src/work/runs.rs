@@ -98,11 +98,8 @@ impl<'py> Runs<'py> {
         let mut all = Holdings::new(names);
         for (place, item) in self.0.iter().enumerate() {
             watch.part(place as u64, self.0.len() as u64 + 1);
-            let log = match item.cast::<Log>() {
-                Ok(log) => log.clone(),
-                Err(_) => Bound::new(py, log::read(py, "log", item, Some(robot), Some(unread), watch)?)?,
-            };
-            let holdings = add(py, log.get(), robot, samples, watch)?;
+            let log = log::of(item, robot, Some(unread), watch)?;
+            let holdings = add(py, log.get(), samples, watch)?;
             if self.0.len() > 1 && !holdings.has_reference() && holdings.wrenched == 0 {
                 let text = format!(
                     "log {} of `log` has nothing to compare with on the signal `{}`",
@@ -149,14 +146,7 @@ fn overlap(one: Option<(i64, i64)>, other: Option<(i64, i64)>) -> bool {
 }
 
 /// Adds a log.
-fn add(
-    py: Python<'_>,
-    log: &Log,
-    robot: &Bound<'_, Robot>,
-    samples: &mut SampleStore<'_>,
-    watch: &mut Watch<'_>,
-) -> Outcome<Holdings> {
-    log.check_usable(py, &robot.borrow().file.cable_names())?;
+fn add(py: Python<'_>, log: &Log, samples: &mut SampleStore<'_>, watch: &mut Watch<'_>) -> Outcome<Holdings> {
     let cable_count = samples.robot().cables().len();
     let (mut holdings, mut cables) = (Holdings::new(cable_count), Vec::new());
     let unknown = vec![f64::NAN; cable_count];

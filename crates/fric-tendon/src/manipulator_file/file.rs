@@ -13,7 +13,7 @@ use std::vec::Vec;
 
 use fric_core::robot::check;
 use fric_core::robot::locate::{Line, Step, line_of, read_tables};
-use fric_core::robot::read::exactly;
+use fric_core::robot::read::{exactly, table, table_if_given};
 use fric_core::text_file;
 use serde::de::{self, Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
@@ -54,23 +54,25 @@ pub struct ManipulatorTables {
     #[serde(default, deserialize_with = "exactly")]
     pub gravity_m_per_s2: [f64; 2],
     /// The backbone.
+    #[serde(deserialize_with = "table")]
     pub backbone: BackboneTable,
     /// The load on the last disk.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "table")]
     pub tip: TipTable,
     /// The tendon on the side of +y and its holes.
+    #[serde(deserialize_with = "table")]
     pub tendon: TendonTable,
     /// The tendon on the side of −y; like the first by default.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "table_if_given")]
     pub antagonist: Option<TendonTable>,
     /// The gratings of the first tendon.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "table_if_given")]
     pub gratings: Option<GratingsTable>,
     /// The frame in which the markers are measured; the base frame by default.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "table_if_given")]
     pub markers: Option<MarkersTable>,
     /// The tension sensor at the base; an ideal one by default.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "table_if_given")]
     pub base_sensor: Option<BaseSensorTable>,
 }
 

@@ -1,0 +1,73 @@
+//! Signals that the robot file states in place of measured ones, for samples that are no log's.
+
+use fric_core::Sample;
+
+use super::SignalPaths;
+use super::hanging::HangingRows;
+use super::lengths::{LengthPoses, PosesFromLengths};
+use super::waiting::Row;
+
+/// Completes samples as [`SignalReader`](super::SignalReader) does for a log: with a known reference, and with the pose from the lengths.
+#[derive(Debug)]
+pub struct StatedSignals {
+    constant_n: Option<f64>,
+    hanging: Option<HangingRows>,
+    poses: Option<PosesFromLengths>,
+    /// The row that waits for no other.
+    row: Option<Row>,
+    /// The row that was lent last.
+    lent: Row,
+}
+
+impl StatedSignals {
+    /// Returns what completes samples; `None` if all signals are measured.
+    #[must_use]
+    pub fn of(paths: &SignalPaths) -> Option<Self> {
+        let stated = Self {
+            constant_n: paths.constant_reference_n(),
+            hanging: HangingRows::of(paths),
+            poses: PosesFromLengths::of(paths),
+            row: None,
+            lent: Row::default(),
+        };
+        (stated.constant_n.is_some() || stated.hanging.is_some() || stated.poses.is_some()).then_some(stated)
+    }
+
+    /// Adds the next sample. Take what [`next_sample`](Self::next_sample) has before adding another one.
+    pub fn push(&mut self, sample: &Sample<'_>) {
+        let mut row = Row::of(sample);
+        if let Some(constant_n) = self.constant_n {
+            row.set_reference(constant_n);
+        }
+        match &mut self.hanging {
+            Some(hanging) => hanging.push(row),
+            None => self.row = Some(row),
+        }
+    }
+
+    /// Marks the end: no sample follows.
+    pub fn end(&mut self) {
+        self.hanging.iter_mut().for_each(HangingRows::end);
+    }
+
+    /// Returns the next complete sample; `None` if it waits for others.
+    pub fn next_sample(&mut self) -> Option<Sample<'_>> {
+        let sample = match &mut self.hanging {
+            Some(hanging) => hanging.is_ready().then(|| hanging.pop()).flatten()?,
+            None => {
+                self.lent = self.row.take()?;
+                self.lent.sample()
+            }
+        };
+        Some(match &mut self.poses {
+            Some(poses) => Sample { pose: poses.next_pose(sample.cables, true), ..sample },
+            None => sample,
+        })
+    }
+
+    /// Returns the statistics of the poses from the lengths; `None` if the pose is measured.
+    #[must_use]
+    pub fn length_poses(&self) -> Option<LengthPoses> {
+        self.poses.as_ref().map(|poses| poses.summary)
+    }
+}
