@@ -110,6 +110,7 @@ def test_a_log_in_arrays_is_replayed_to_the_same_bits(robot, log):
         assert np.array_equal(other.outside_wrench, expected.outside_wrench, equal_nan=True)
 
 
+@pytest.mark.filterwarnings("ignore:.*times the reference")
 @pytest.mark.parametrize(
     ("key", "stated"),
     [("reference", {"constant_n": 9.0}), ("reference", {"hanging_mass_kg": 1.0}), ("pose", "lengths")],
