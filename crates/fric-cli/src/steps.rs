@@ -24,11 +24,13 @@ impl StepResult {
     }
 }
 
-/// Formats steps as a table.
+/// Formats steps as a table. Several reasons that a step above has as well are not repeated.
 pub fn step_table(title: &str, steps: &[StepResult]) -> String {
-    let row = |step: &StepResult| {
+    let row = |(place, step): (usize, &StepResult)| {
         let possible = if step.possible { "possible" } else { "impossible" };
-        [step.step.to_owned(), possible.to_owned(), step.reasons.join("; ")]
+        let alike = steps.iter().take(place).find(|above| step.reasons.len() > 1 && above.reasons == step.reasons);
+        let reasons = alike.map_or_else(|| step.reasons.join("; "), |above| format!("as `{}`", above.step));
+        [step.step.to_owned(), possible.to_owned(), reasons]
     };
-    table_with_text(&[title, "", ""], 3, &steps.iter().map(row).collect::<Vec<_>>())
+    table_with_text(&[title, "", ""], 3, &steps.iter().enumerate().map(row).collect::<Vec<_>>())
 }
