@@ -146,8 +146,7 @@ impl ReferenceWrenches {
         for (place, sum) in sums.iter_mut().enumerate() {
             let columns = structure.iter().skip(place * records.len());
             for (record, column) in records.iter().zip(columns) {
-                let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-                *sum += column * (sensor_n * record.params.frictionless_gain());
+                *sum += column * record.frictionless_n(place);
             }
         }
         let of_component = |component: usize| {
@@ -380,9 +379,7 @@ impl<'a> Case<'a> {
             let mut sums = [*outside, *outside];
             let columns = self.structure.iter().skip(cycle * count).take(count);
             for ((member, forces), column) in problem.members.iter().zip(&forces).zip(columns) {
-                let sensor_n = member.record.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-                let frictionless_n = sensor_n * member.record.params.frictionless_gain();
-                sums[0] += column * frictionless_n;
+                sums[0] += column * member.record.frictionless_n(cycle);
                 sums[1] += column * forces.at(cycle).0;
             }
             for (errors, sum) in errors.iter_mut().zip(sums) {

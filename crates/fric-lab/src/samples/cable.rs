@@ -102,6 +102,13 @@ impl<'a> CableRecord<'a> {
         self.references_n.get(cycle).copied().unwrap_or(f64::NAN)
     }
 
+    /// Returns the force at the platform that the sensor shows in a cycle if there is no friction, N; NaN past the last cycle.
+    #[must_use]
+    pub(crate) fn frictionless_n(&self, cycle: usize) -> f64 {
+        let sensor_n = self.rows.get(cycle).map_or(f64::NAN, |row| row.signals.sensor_force_n);
+        sensor_n * self.params.frictionless_gain()
+    }
+
     /// Returns the forces that the sensor shows, N; NaN where it shows none, because such a sample takes the last good one.
     pub(crate) fn shown_forces_n(&self) -> Vec<f64> {
         let shown_n = |row: &Row| if row.signals.sensor_finite { row.signals.sensor_force_n } else { f64::NAN };

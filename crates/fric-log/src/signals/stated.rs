@@ -52,12 +52,11 @@ impl StatedSignals {
 
     /// Returns the next complete sample; `None` if it waits for others.
     pub fn next_sample(&mut self) -> Option<Sample<'_>> {
-        let sample = match &mut self.hanging {
-            Some(hanging) => hanging.is_ready().then(|| hanging.pop()).flatten()?,
-            None => {
-                self.lent = self.row.take()?;
-                self.lent.sample()
-            }
+        let sample = if let Some(hanging) = &mut self.hanging {
+            hanging.is_ready().then(|| hanging.pop()).flatten()?
+        } else {
+            self.lent = self.row.take()?;
+            self.lent.sample()
         };
         Some(match &mut self.poses {
             Some(poses) => Sample { pose: poses.next_pose(sample.cables, true), ..sample },

@@ -329,8 +329,7 @@ impl<'a> Bench<'a> {
         for place in (0..self.counts.len()).filter(|place| self.counts[*place]) {
             let columns = structure.iter().skip(place * self.records.len() + cables.start);
             let error = |(record, column): (&CableRecord<'_>, &Vector6<f64>)| {
-                let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-                (self.whitening * column).abs() * (ratio * sensor_n * record.params.frictionless_gain()).abs()
+                (self.whitening * column).abs() * (ratio * record.frictionless_n(place)).abs()
             };
             sum += records.iter().zip(columns).map(error).sum::<Vector6<f64>>().norm_squared();
             count += 1.0;
@@ -359,8 +358,7 @@ impl<'a> Bench<'a> {
             let columns = structure.iter().skip(place * count).take(count);
             let mut of_sample = Vector6::zeros();
             for ((column, record), wander_n) in columns.zip(&self.records).zip(wander_n) {
-                let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-                let error_n = (ratio * sensor_n * record.params.frictionless_gain()).hypot(*wander_n);
+                let error_n = (ratio * record.frictionless_n(place)).hypot(*wander_n);
                 let of_cable = self.whitening * column * error_n;
                 of_sample += of_cable.component_mul(&of_cable);
             }
@@ -382,8 +380,7 @@ impl<'a> Bench<'a> {
                 structure.iter().skip(place * count).take(count).map(|column| self.whitening * column).collect();
             let own = levers.get(cable)?;
             let error = |(lever, record): (&Vector6<f64>, &CableRecord<'_>)| {
-                let sensor_n = record.rows.get(place).map_or(f64::NAN, |row| row.signals.sensor_force_n);
-                (ratio * sensor_n * record.params.frictionless_gain() * own.dot(lever)).powi(2)
+                (ratio * record.frictionless_n(place) * own.dot(lever)).powi(2)
             };
             Some(levers.iter().zip(&self.records).map(error).sum::<f64>().sqrt() / own.norm_squared())
         };
