@@ -37,6 +37,7 @@ def test_a_robot_reads_as_its_file(robot):
         ("", "cycle_s", 0.002),
         ("platform", "mass_kg", 1),
         ("platform", "center_of_mass_m", [0.0, 0.1, 0.2]),
+        ("platform", "inertia_kg_m2", [0.002, 0.0, 0.0, 0.002, 0.0, 0.003]),
         ("monitor", "frozen_cycles", 7),
         ("monitor", "length_noise_m", 1e-5),
         ("monitor", "sensor_jump_n", 2.5),

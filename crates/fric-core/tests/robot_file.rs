@@ -208,6 +208,8 @@ fn bad_files() -> Vec<Bad> {
             26,
             &["`friction`", "table"],
         ),
+        bad(REFERENCE, "\"/r\"\ncolumns = { \"cable1.force_n\" = [\"F\", 2.0] }", 13, &["`cable1.force_n`", "table"]),
+        bad("[platform]", "monitor = [7]\n[platform]", 5, &["`monitor`", "table"]),
         bad("{ wrap_deg = 90.0 }", "[90.0]", 23, &["`pulleys`", "table"]),
         // Values out of range, and what is no number.
         bad(
@@ -215,6 +217,12 @@ fn bad_files() -> Vec<Bad> {
             "inertia_kg_m2 = [-1.0, 0.0, 0.0, 1.0, 0.0, 1.0]",
             6,
             &["`inertia_kg_m2`", "is -1;", "0 to 1e9"],
+        ),
+        bad(
+            "mass_kg = 0.41",
+            "inertia_kg_m2 = [1.0, 5.0, 0.0, 1.0, 0.0, 1.0]",
+            6,
+            &["`inertia_kg_m2`", "no tensor of a body"],
         ),
         bad("mass_kg = 0.41", "inertia_kg_m2 = [1.0, 1.0, 1.0]", 6, &["`inertia_kg_m2`", "6"]),
         bad("cycle_s = 0.001", "cycle_s = 0.0", 3, &["`cycle_s`", "is 0;", "1e-6 to 10"]),

@@ -332,26 +332,38 @@ impl Log {
         })
     }
 
-    /// Returns a log of arrays with the signals that a robot's file states in place of measured ones; `None` if there are none, or if it was read, and
-    /// so has them.
-    fn with_stated(&self, py: Python<'_>, robot: &Robot) -> Outcome<Option<Self>> {
-        let stated = StatedSignals::of(&SignalPaths::of_robot(&robot.file)?).filter(|_| self.robot.is_none());
+    /// Returns a log of arrays with the signals that a robot's file states in place of measured ones; `None` if there are none, or if the log was read:
+    /// it has those of the robot that it was read for.
+    fn with_stated(
+        &self,
+        py: Python<'_>,
+        robot: &Robot,
+        unread: Option<Role>,
+        watch: &mut Watch<'_>,
+    ) -> Outcome<Option<Self>> {
+        let mut paths = SignalPaths::of_robot(&robot.file)?;
+        if let Some(unread) = unread {
+            paths = paths.with(unread, None);
+        }
+        let stated = StatedSignals::of(&paths).filter(|_| self.robot.is_none());
         let Some(mut stated) = stated else { return Ok(None) };
         let (mut columns, mut cables) = (SampleColumns::default(), Vec::new());
         self.with_rows(py, |rows| {
-            for row in 0..rows.len() {
-                let Some(sample) = rows.sample(row, &mut cables) else { break };
-                stated.push(&sample);
-                while let Some(sample) = stated.next_sample() {
-                    columns.push(&sample);
+            watch.work(rows.len(), |range| {
+                for row in range {
+                    let Some(sample) = rows.sample(row, &mut cables) else { break };
+                    stated.push(&sample);
+                    while let Some(sample) = stated.next_sample() {
+                        columns.push(&sample);
+                    }
                 }
-            }
-            stated.end();
-            while let Some(sample) = stated.next_sample() {
-                columns.push(&sample);
-            }
-            Ok(())
+                Ok(())
+            })
         })?;
+        stated.end();
+        while let Some(sample) = stated.next_sample() {
+            columns.push(&sample);
+        }
         warn(py, &stated.length_poses().map_or_else(Vec::new, |poses| poses.warnings()))?;
         let names: Vec<&str> = self.cable_names.iter().map(String::as_str).collect();
         let stated = Self::new(py, columns, &names, None, self.sources.clone())?;
@@ -410,7 +422,7 @@ pub fn of<'py>(
     };
     let robot = robot.borrow();
     log.get().check_usable(py, &robot.file.cable_names())?;
-    log.get().with_stated(py, &robot)?.map_or(Ok(log), |log| Ok(Bound::new(py, log)?))
+    log.get().with_stated(py, &robot, unread, watch)?.map_or(Ok(log), |log| Ok(Bound::new(py, log)?))
 }
 
 /// Does the same as [`read_log`] for the paths of an argument, as a part of a longer call: for a fit, without the signal that it does not use, and without warnings that the fit

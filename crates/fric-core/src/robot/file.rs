@@ -18,7 +18,7 @@ use thiserror::Error;
 use super::locate::{Line, Step, line_of, read_tables};
 use super::log_columns;
 pub use super::log_columns::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
-use super::read::{exactly, exactly_if_given, table, table_if_given, tables};
+use super::read::{exactly, exactly_if_given, table, table_if_given, tables, tables_by_key};
 pub use super::reference::{KnownReferenceTable, ReferenceTable};
 use super::{CableParams, MOST_CABLES, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
 use crate::effects::Effect;
@@ -96,7 +96,7 @@ pub struct LogTable {
     /// External wrench on the platform.
     pub wrench: String,
     /// `[log.columns]`: for CSV, the columns whose names or units differ from the defaults.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "tables_by_key")]
     pub columns: BTreeMap<String, ColumnTable>,
 }
 

@@ -36,6 +36,17 @@ pub fn tables<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -
     Ok(entries.into_iter().map(|Entry(table)| table).collect())
 }
 
+/// Tables by key.
+///
+/// # Errors
+/// As [`table`].
+pub fn tables_by_key<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<BTreeMap<String, T>, D::Error> {
+    let entries = BTreeMap::<String, Entry<T>>::deserialize(deserializer)?;
+    Ok(entries.into_iter().map(|(key, Entry(table))| (key, table)).collect())
+}
+
 struct Entry<T>(T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entry<T> {

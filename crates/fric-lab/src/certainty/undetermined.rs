@@ -147,7 +147,8 @@ impl Solution {
     }
 
     /// Holds the undetermined parameters one after the other. A parameter whose given value contradicts the samples keeps its estimate, because the
-    /// samples know that much; but not one that the search drove along the open direction to a bound, with the given value within its interval.
+    /// samples know that much; one that the search drove along the open direction to a bound, with the given value within its interval, only if the
+    /// contradiction is gross.
     pub(crate) fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
         let mut kept = Vec::new();
         let mut least = None;

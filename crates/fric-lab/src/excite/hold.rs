@@ -48,11 +48,13 @@ impl Hold {
         let pose = set_point.pose();
         // The caller has checked the kinematics, so every cable leaves its pulley.
         self.platform.structure(&pose, &mut self.columns);
-        if self.holds(set_point, &set_point.acceleration_m_per_s2, wanted_n) {
+        let wrench = self.platform.wrench_at(set_point);
+        if self.holds(&wrench, wanted_n) {
             return Ok(&self.forces_n);
         }
         let worst =
-            self.worst(set_point, wanted_n).and_then(|(cable, force_n)| Some((names.get(cable)?.clone(), force_n)));
+            self.worst(&wrench, wanted_n).and_then(|(cable, force_n)| Some((names.get(cable)?.clone(), force_n)));
+        let at_rest = self.platform.outside_wrench(&set_point.orientation, &Vector3::zeros());
         Err(ExcitationError::NotHeld {
             least_n: self.least_n,
             greatest_n: self.greatest_n,
@@ -60,25 +62,23 @@ impl Hold {
             time_s,
             phase,
             worst,
-            holds_at_rest: self.holds(set_point, &Vector3::zeros(), wanted_n),
+            holds_at_rest: self.holds(&at_rest, wanted_n),
         })
     }
 
-    /// Whether forces within the bounds exist at an acceleration; if so, `forces_n` holds them.
-    fn holds(&mut self, set_point: &SetPoint, acceleration_m_per_s2: &Vector3<f64>, wanted_n: f64) -> bool {
-        let wrench = self.platform.outside_wrench(&set_point.orientation, acceleration_m_per_s2);
+    /// Whether forces within the bounds exist under a wrench; if so, `forces_n` holds them.
+    fn holds(&mut self, wrench: &Vector6<f64>, wanted_n: f64) -> bool {
         let bounds_n = [self.least_n, self.greatest_n.unwrap_or(f64::INFINITY)];
         self.forces_n.fill(wanted_n);
-        self.distribution.solve_within(&self.columns, &wrench, bounds_n, &mut self.forces_n)
+        self.distribution.solve_within(&self.columns, wrench, bounds_n, &mut self.forces_n)
     }
 
     /// Returns the cable that is furthest out of bounds with the forces nearest to the wanted ones, and its force, N; `None` if no forces of either
     /// sign hold the platform.
-    fn worst(&mut self, set_point: &SetPoint, wanted_n: f64) -> Option<(usize, f64)> {
-        let wrench = self.platform.wrench_at(set_point);
+    fn worst(&mut self, wrench: &Vector6<f64>, wanted_n: f64) -> Option<(usize, f64)> {
         self.forces_n.fill(wanted_n);
         let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
-        if !self.distribution.solve_within(&self.columns, &wrench, unbounded, &mut self.forces_n) {
+        if !self.distribution.solve_within(&self.columns, wrench, unbounded, &mut self.forces_n) {
             return None;
         }
         let greatest_n = self.greatest_n.unwrap_or(f64::INFINITY);

@@ -23,7 +23,8 @@ const HUBER_RATIO: f64 = 1.345;
 const DEVIATION_PER_MEDIAN: f64 = 1.482_602_218_505_602;
 /// A given value contradicts the samples if it raises the sum of squares by more than this fraction.
 pub(crate) const CONTRADICTION_RATIO: f64 = 0.01;
-/// A given value within its interval contradicts them only beyond this factor: the interval, of straight lines, does not hold where friction ends.
+/// A parameter at its bound, with the given value within its interval, gets the given value unless that multiplies the sum of squares by more than this. The
+/// interval supposes a straight line, which a bound ends: of bearings without friction the given one had multiplied it by a thousand.
 pub(crate) const GROSS_CONTRADICTION: f64 = 2.0;
 /// A search continues to within this many standard errors of the minimum.
 pub(crate) const NEAR_ERRORS: f64 = 0.01;

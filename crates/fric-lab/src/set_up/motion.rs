@@ -4,244 +4,298 @@ use fric_core::{CableParams, Pose, RobotParams, Sample};
 
 use crate::text::{listed, significant};
 
-/// Time over which changes are compared, s: the noise of a length is small beside its change then, and a delay of the speed of some 10 ms is as well.
+/// Time over which the length changes between two comparisons, s: the noise of a length is small beside its change then, and so is a delay of the speed of
+/// some 10 ms.
 const STEP_S: f64 = 0.1;
 /// Longest time between two samples that belong together, s.
 const LONGEST_GAP_S: f64 = 0.5;
-/// Ratio, or its inverse, beyond which two measures of one motion differ: a drum whose cable winds in layers has up to 1.2. The smallest of a usual
-/// cause is 2, of a block.
+/// Ratio of speed to change of length, or its inverse, beyond which they are not the same. A filter of the speed keeps the ratio; the smallest of a usual
+/// cause is 2.
 const BEYOND_ERRORS: f64 = 1.3;
-/// Least squared correlation that is one of motions. Of standing cables half and twice of it say the same.
+/// Least squared correlation of two measures of one motion. Half and twice as much unexplained gives the same of cables that stand still.
 const LEAST_CORRELATION: f64 = 0.5;
-/// Least change of the length in a step, rms, m, and least variation of the length, m: below, noise may be as large.
+/// The same of two lengths that differ by a factor alone.
+const PROPORTIONAL: f64 = 0.99;
+/// Least change of the length in a step, rms, m, and least range and deviation of a length, m: below, noise and stretch may be as large.
 const LEAST_CHANGE_M: f64 = 1e-4;
 const LEAST_VARIATION_M: f64 = 0.01;
-/// Difference from the lengths of the poses as a fraction of their own variation, both rms, beyond which points or poses are wrong. Cables that sag and
-/// poses that are late make some hundredths; half of it tells a point that is off by a twentieth of the motion, twice as much not one by a seventh.
+/// Difference from the lengths of the poses as a fraction of their variation, both rms and beside what a delay of the poses makes, beyond which factor,
+/// points or poses are wrong. Cables that sag or stretch make some hundredths. Half of it warns of a point that is off by a twentieth of the motion, twice as
+/// much not of one that is off by a seventh.
 const MOST_OFF: f64 = 0.1;
 /// Relative difference of a ratio from that of its cause.
 const OF_CAUSE: f64 = 0.05;
 
 /// Usual ratios of a speed to the change of the length.
 const SPEED_CAUSES: [(f64, &str); 5] = [
-    (1e3, "mm/s beside a length in m, or a length in m that is one in km"),
-    (1e-3, "m/s beside a length in mm"),
+    (1e3, "a speed in mm/s"),
+    (1e-3, "a length in mm"),
+    (1e-2, "a length in cm"),
     (60.0, "a speed per minute"),
-    (1e-2, "m/s beside a length in cm"),
     (-1.0, "the other sign: both are positive while the cable is paid out"),
 ];
 /// Usual ratios of a length to that of the poses.
-const LENGTH_CAUSES: [(f64, &str); 5] = [
+const LENGTH_CAUSES: [(f64, &str); 7] = [
     (1e3, "a length in mm"),
+    (1e2, "a length in cm"),
     (1e-3, "poses and points in mm"),
+    (1e-2, "poses and points in cm"),
     (-1.0, "a length of the other sign: it has to grow while the cable is paid out"),
     (2.0, "a block that halves the motion"),
     (0.5, "a block that doubles the motion"),
 ];
 
-/// Products of two measures of one motion.
-#[derive(Clone, Copy, Debug, Default)]
-struct Products {
+/// Sums over quantities that belong together, one of each in a sample.
+#[derive(Clone, Copy, Debug)]
+struct Sums<const COUNT: usize> {
     count: f64,
-    one: f64,
-    other: f64,
-    both: f64,
+    sums: [f64; COUNT],
+    products: [[f64; COUNT]; COUNT],
 }
 
-/// Two measures of one length over a stretch of a log; the zero of neither is known.
-#[derive(Clone, Copy, Debug, Default)]
-struct Stretch {
-    start: Option<[f64; 2]>,
-    sums: [f64; 2],
-    products: Products,
-}
-
-impl Stretch {
-    fn add(&mut self, one: f64, other: f64) {
-        let [start, other_start] = *self.start.get_or_insert([one, other]);
-        let (one, other) = (one - start, other - other_start);
-        self.products.add(one, other);
-        self.sums = [self.sums[0] + one, self.sums[1] + other];
-    }
-
-    /// Returns the products about the means.
-    fn centred(&self) -> Products {
-        let Products { count, one, other, both } = self.products;
-        let [sum, other_sum] = self.sums;
-        let per_sample = if count > 0.0 { count.recip() } else { 0.0 };
-        Products {
-            count,
-            one: one - sum * sum * per_sample,
-            other: other - other_sum * other_sum * per_sample,
-            both: both - sum * other_sum * per_sample,
-        }
+impl<const COUNT: usize> Default for Sums<COUNT> {
+    fn default() -> Self {
+        Self { count: 0.0, sums: [0.0; COUNT], products: [[0.0; COUNT]; COUNT] }
     }
 }
 
-impl Products {
-    fn add(&mut self, one: f64, other: f64) {
+impl<const COUNT: usize> Sums<COUNT> {
+    fn add(&mut self, sample: [f64; COUNT]) {
         self.count += 1.0;
-        self.one += one * one;
-        self.other += other * other;
-        self.both += one * other;
-    }
-
-    fn sum(&self, more: &Self) -> Self {
-        Self {
-            count: self.count + more.count,
-            one: self.one + more.one,
-            other: self.other + more.other,
-            both: self.both + more.both,
+        for ((sum, products), one) in self.sums.iter_mut().zip(&mut self.products).zip(sample) {
+            *sum += one;
+            products.iter_mut().zip(sample).for_each(|(product, other)| *product += one * other);
         }
     }
 
-    /// Whether either measure varies by so much, rms.
-    fn is_beyond(&self, least_m: f64) -> bool {
-        self.one.max(self.other) > self.count * least_m * least_m
+    /// Returns the same with products about the means.
+    fn centred(mut self) -> Self {
+        for (products, one) in self.products.iter_mut().zip(self.sums) {
+            for (product, other) in products.iter_mut().zip(self.sums) {
+                *product -= one * other / self.count.max(1.0);
+            }
+        }
+        self
     }
 
-    /// Returns the ratio of one measure to the other if they are of one motion and differ by it, whatever the noise of either.
-    fn ratio(&self) -> Option<f64> {
-        let is_one_motion = self.both * self.both > LEAST_CORRELATION * self.one * self.other;
-        let slopes = [self.both / self.other, self.one / self.both];
-        let is_more = slopes.iter().all(|slope| *slope > BEYOND_ERRORS);
-        let is_less = slopes.iter().all(|slope| *slope < BEYOND_ERRORS.recip());
-        (is_one_motion && (is_more || is_less)).then(|| (self.one / self.other).sqrt().copysign(self.both))
+    /// Adds the products of another stretch.
+    fn join(&mut self, other: &Self) {
+        self.count += other.count;
+        for (products, more) in self.products.iter_mut().zip(&other.products) {
+            products.iter_mut().zip(more).for_each(|(product, more)| *product += more);
+        }
+    }
+
+    /// Whether a quantity is so large, rms.
+    fn is_beyond(&self, quantity: usize, least: f64) -> bool {
+        self.products[quantity][quantity] > self.count * least * least
+    }
+
+    /// Returns the ratio of two quantities if they are proportional to this squared correlation.
+    fn ratio(&self, one: usize, other: usize, correlation: f64) -> Option<f64> {
+        let [own, others, both] =
+            [(one, one), (other, other), (one, other)].map(|(row, column)| self.products[row][column]);
+        (both * both > correlation * own * others).then(|| (own / others).sqrt().copysign(both))
     }
 }
 
-/// Sums over a cable's motion.
+/// Quantities of a step: the way by the speed and by the length, m.
+const BY_SPEED: usize = 0;
+const BY_LENGTH: usize = 1;
+/// Quantities of a stretch: the length, that of the pose, m, and the rate of the length, m/s.
+const SHOWN: usize = 0;
+const POSED: usize = 1;
+const RATE: usize = 2;
+
+/// Sums over a cable's motion in one log.
 #[derive(Clone, Copy, Debug, Default)]
-struct Motion {
+struct CableMotion {
     /// Time, length and speed of the last sample.
     last: Option<(i64, f64, f64)>,
-    /// Time since the present step began, s, the change of the length and that by the speed, m.
-    step: (f64, f64, f64),
-    /// Change by the speed and of the length.
-    speed: Products,
-    /// Length and length by the pose at the end of each step since the last gap or jump, m, and before it.
-    stretch: Stretch,
-    before: Products,
+    /// Whether the length jumped to the last sample.
+    has_jumped: bool,
+    /// Time since the present step began, s, and the ways in it.
+    step: (f64, [f64; 2]),
+    steps: Sums<2>,
+    /// Least and greatest length.
+    range_m: Option<[f64; 2]>,
+    /// Lengths at the ends of the steps since the last gap or jump, from the first on, because the zero of a length is not known.
+    start_m: Option<[f64; 2]>,
+    stretch: Sums<3>,
+    /// The stretches before it, each about its own mean.
+    stretches: Sums<3>,
 }
 
-/// Sums over the motion of all cables of a robot.
+/// Sums over the motion of all cables of a robot, log by log.
 #[derive(Clone, Debug)]
 pub(crate) struct Motions {
-    cables: Vec<(CableParams, Motion)>,
+    cables: Vec<(CableParams, CableMotion)>,
+    cycle_s: f64,
     length_jump_m: f64,
+    /// Number of logs that have ended, and what is wrong in them: log, problem and cable.
+    log_count: usize,
+    problems: Vec<(usize, String, usize)>,
 }
 
 impl Motions {
     pub fn new(robot: &RobotParams<'_>) -> Self {
-        let length_jump_m = robot.monitor().length_jump_m;
-        Self { cables: robot.cables().iter().map(|params| (*params, Motion::default())).collect(), length_jump_m }
+        Self {
+            cables: robot.cables().iter().map(|params| (*params, CableMotion::default())).collect(),
+            cycle_s: robot.cycle_s(),
+            length_jump_m: robot.monitor().length_jump_m,
+            log_count: 0,
+            problems: Vec::new(),
+        }
     }
 
     /// Begins another log.
     pub fn start(&mut self) {
-        self.cables.iter_mut().for_each(|(_, motion)| motion.start());
+        if self.cables.iter().any(|(_, motion)| motion.last.is_some()) {
+            self.problems = self.all_problems();
+            self.log_count += 1;
+        }
+        self.cables.iter_mut().for_each(|(_, motion)| *motion = CableMotion::default());
     }
 
     /// Adds a sample.
     pub fn add(&mut self, sample: &Sample<'_>) {
         for ((params, motion), input) in self.cables.iter_mut().zip(sample.cables) {
             let (length_m, speed_m_per_s) = (input.length_m, input.speed_m_per_s);
-            let ended = motion.go_on(sample.stamp_nanos, length_m, speed_m_per_s, self.length_jump_m);
-            let pose = sample.pose.filter(Pose::is_usable).filter(|_| ended);
-            if let Some(by_pose_m) = pose.and_then(|pose| params.length_m(&pose)) {
-                motion.stretch.add(length_m, by_pose_m);
+            if !(length_m.is_finite() && speed_m_per_s.is_finite()) {
+                motion.end_stretch();
+                continue;
+            }
+            let per_cycle_m = self.length_jump_m / self.cycle_s;
+            let ended = motion.go_on((sample.stamp_nanos, length_m, speed_m_per_s), per_cycle_m, self.cycle_s);
+            let Some(rate_m_per_s) = ended else { continue };
+            if let Some(posed_m) = sample.pose.filter(Pose::is_usable).and_then(|pose| params.length_m(&pose)) {
+                motion.compare([length_m, posed_m], rate_m_per_s);
             }
         }
     }
 
-    /// Returns warnings about cables whose motion contradicts itself. Cables with the same cause share a line.
+    fn all_problems(&self) -> Vec<(usize, String, usize)> {
+        let mut problems = self.problems.clone();
+        for (cable, (_, motion)) in self.cables.iter().enumerate() {
+            let of_cable = motion.of_speed().into_iter().chain(motion.of_length());
+            problems.extend(of_cable.map(|problem| (self.log_count, problem, cable)));
+        }
+        problems
+    }
+
+    /// Returns warnings about cables whose motion contradicts itself. Cables of one log with the same cause share a line.
     pub fn warnings(&self, names: &[&str]) -> Vec<String> {
-        let mut told: Vec<(String, Vec<&str>)> = Vec::new();
-        for (name, (_, motion)) in names.iter().zip(&self.cables) {
-            for what in motion.of_speed().into_iter().chain(motion.of_length()) {
-                match told.iter_mut().find(|(other, _)| *other == what) {
-                    Some((_, names)) => names.push(name),
-                    None => told.push((what, vec![name])),
-                }
+        let mut lines: Vec<(usize, String, Vec<&str>)> = Vec::new();
+        for (log, problem, cable) in self.all_problems() {
+            let Some(name) = names.get(cable) else { continue };
+            match lines.iter_mut().find(|(other, what, _)| (*other, &*what) == (log, &problem)) {
+                Some((.., names)) => names.push(name),
+                None => lines.push((log, problem, vec![name])),
             }
         }
-        told.into_iter().map(|(what, names)| format!("{}: {what}", listed(&names))).collect()
+        let line = |(log, problem, names): (usize, String, Vec<&str>)| {
+            let log = if self.log_count > 0 { format!("log {}: ", log + 1) } else { String::new() };
+            format!("{log}{}: {problem}", listed(&names))
+        };
+        lines.into_iter().map(line).collect()
     }
 }
 
-impl Motion {
-    fn start(&mut self) {
-        self.last = None;
-        self.end_stretch();
-    }
-
+impl CableMotion {
     fn end_stretch(&mut self) {
-        self.step = Default::default();
-        self.before = self.before.sum(&std::mem::take(&mut self.stretch).centred());
+        (self.last, self.step, self.start_m) = (None, Default::default(), None);
+        self.stretches.join(&std::mem::take(&mut self.stretch).centred());
     }
 
-    /// Goes on to a sample. Returns whether a step has ended with it.
-    fn go_on(&mut self, stamp_nanos: i64, length_m: f64, speed_m_per_s: f64, length_jump_m: f64) -> bool {
-        if !(length_m.is_finite() && speed_m_per_s.is_finite()) {
-            self.start();
-            return false;
-        }
-        let Some((before_nanos, before_m, before_m_per_s)) = self.last.replace((stamp_nanos, length_m, speed_m_per_s))
-        else {
-            return true;
-        };
+    /// Goes on to a sample. Returns the rate of the length if a step has ended with it.
+    fn go_on(&mut self, sample: (i64, f64, f64), most_m_per_s: f64, cycle_s: f64) -> Option<f64> {
+        let (stamp_nanos, length_m, speed_m_per_s) = sample;
+        let [least_m, greatest_m] = self.range_m.unwrap_or([length_m; 2]);
+        self.range_m = Some([least_m.min(length_m), greatest_m.max(length_m)]);
+        let (before_nanos, before_m, before_m_per_s) = self.last.replace(sample)?;
         #[expect(clippy::cast_precision_loss, reason = "an interval between samples")]
         let passed_s = stamp_nanos.saturating_sub(before_nanos) as f64 * 1e-9;
-        let change_m = length_m - before_m;
-        if !(passed_s > 0.0 && passed_s <= LONGEST_GAP_S && change_m.abs() <= length_jump_m) {
+        if !(passed_s > 0.0 && passed_s <= LONGEST_GAP_S) {
             self.end_stretch();
-            return true;
+            self.last = Some(sample);
+            return None;
         }
-        let (lasted_s, by_length_m, by_speed_m) = &mut self.step;
+        let change_m = length_m - before_m;
+        let jumps = change_m.abs() > most_m_per_s * passed_s.max(cycle_s);
+        // One jump is a new zero, several are motion in another unit.
+        if std::mem::replace(&mut self.has_jumped, jumps) != jumps && jumps {
+            self.end_stretch();
+            self.last = Some(sample);
+            return None;
+        }
+        let (lasted_s, ways_m) = &mut self.step;
         *lasted_s += passed_s;
-        *by_length_m += change_m;
-        *by_speed_m += 0.5 * (before_m_per_s + speed_m_per_s) * passed_s;
+        ways_m[BY_SPEED] += 0.5 * (before_m_per_s + speed_m_per_s) * passed_s;
+        ways_m[BY_LENGTH] += change_m;
         if *lasted_s < STEP_S {
-            return false;
+            return None;
         }
-        self.speed.add(*by_speed_m, *by_length_m);
-        self.step = Default::default();
-        true
+        let (lasted_s, ways_m) = std::mem::take(&mut self.step);
+        self.steps.add(ways_m);
+        Some(ways_m[BY_LENGTH] / lasted_s)
+    }
+
+    /// Compares the length with that of the pose at the end of a step.
+    fn compare(&mut self, lengths_m: [f64; 2], rate_m_per_s: f64) {
+        let start_m = *self.start_m.get_or_insert(lengths_m);
+        self.stretch.add([lengths_m[SHOWN] - start_m[SHOWN], lengths_m[POSED] - start_m[POSED], rate_m_per_s]);
     }
 
     /// Returns what is wrong with the speed.
     fn of_speed(&self) -> Option<String> {
-        let Self { speed, .. } = self;
-        if !speed.is_beyond(LEAST_CHANGE_M) {
+        let steps = &self.steps;
+        let range_m = self.range_m.map_or(0.0, |[least_m, greatest_m]| greatest_m - least_m);
+        if range_m < LEAST_VARIATION_M || !steps.is_beyond(BY_LENGTH, LEAST_CHANGE_M) {
             return None;
         }
-        if speed.one == 0.0 {
-            let what = "the speed is 0 throughout, though the length changes; leave the speed out, and it is derived from the length";
-            return Some(what.to_owned());
+        if steps.products[BY_SPEED][BY_SPEED] == 0.0 {
+            let problem = "the speed is 0 throughout, though the length changes; leave the speed out of the log, and it is derived from the length";
+            return Some(problem.to_owned());
         }
-        let ratio = speed.ratio()?;
-        let cause = cause(&SPEED_CAUSES, ratio).unwrap_or("another unit; both are in metres and seconds");
-        Some(format!(
-            "the speed is {} times the change of the length in a second; the likely cause is {cause}. Without a speed in the log it is derived from the length",
-            significant(ratio)
-        ))
+        let ratio = steps.ratio(BY_SPEED, BY_LENGTH, LEAST_CORRELATION)?;
+        // Noise of either makes one of the two slopes too low and the other too high.
+        let both = steps.products[BY_SPEED][BY_LENGTH];
+        let slopes = [both / steps.products[BY_LENGTH][BY_LENGTH], steps.products[BY_SPEED][BY_SPEED] / both];
+        let is_beyond = slopes.iter().all(|slope| *slope > BEYOND_ERRORS)
+            || slopes.iter().all(|slope| *slope < BEYOND_ERRORS.recip());
+        let likely = cause(&SPEED_CAUSES, ratio).unwrap_or("another unit; both are in metres and seconds");
+        is_beyond.then(|| {
+            format!(
+                "the speed is {} times the change of the length in a second; the likely cause is {likely}. Without a speed in the log it is derived from the \
+                 length",
+                significant(ratio)
+            )
+        })
     }
 
     /// Returns what is wrong with the length, or with the poses and points.
     fn of_length(&self) -> Option<String> {
-        let length = self.before.sum(&self.stretch.centred());
-        let off_m2 = length.one + length.other - 2.0 * length.both;
-        if !length.is_beyond(LEAST_VARIATION_M) || off_m2 <= MOST_OFF * MOST_OFF * length.one.max(length.other) {
+        let mut lengths = self.stretches;
+        lengths.join(&self.stretch.centred());
+        let product = |one: usize, other: usize| lengths.products[one][other];
+        let off_m2 = product(SHOWN, SHOWN) + product(POSED, POSED) - 2.0 * product(SHOWN, POSED);
+        // Poses that are late are off in proportion to the rate.
+        let by_delay = product(SHOWN, RATE) - product(POSED, RATE);
+        let delayed_m2 = if product(RATE, RATE) > 0.0 { by_delay * by_delay / product(RATE, RATE) } else { 0.0 };
+        let most_m2 = product(SHOWN, SHOWN).max(product(POSED, POSED));
+        if !lengths.is_beyond(POSED, LEAST_VARIATION_M) || off_m2 - delayed_m2 <= MOST_OFF * MOST_OFF * most_m2 {
             return None;
         }
-        let known = length.ratio().and_then(|ratio| Some((ratio, cause(&LENGTH_CAUSES, ratio)?)));
-        Some(match known {
-            Some((ratio, cause)) => format!(
-                "the length changes {} times as much as the poses have it; the likely cause is {cause}",
-                significant(ratio)
-            ),
-            None => "the changes of the length are not those that the poses make of `base_m` and `platform_m`, by more than a tenth; compare the points, the order \
-                     of the cables, and the frame and unit of the poses"
+        Some(match lengths.ratio(SHOWN, POSED, PROPORTIONAL) {
+            Some(ratio) => {
+                let likely = cause(&LENGTH_CAUSES, ratio).unwrap_or("a wrong radius of the drum, gear or unit");
+                format!(
+                    "the length changes {} times as much as the poses have it; the likely cause is {likely}",
+                    significant(ratio)
+                )
+            }
+            None => "the changes of the length are not those that the poses make of `base_m` and `platform_m`, by more than a tenth; compare the points, the \
+                     order of the cables, and the frame and unit of the poses"
                 .to_owned(),
         })
     }
@@ -264,13 +318,15 @@ mod tests {
 
     const EXAMPLE: &str = include_str!("../../../../examples/mini-ipanema.toml");
 
-    /// What is told of a log at 100 Hz whose first cable has a spoilt length and speed, in which noise of 0.05 mm and 2 mm/s is; the platform goes to and
-    /// fro, in a frame that is shifted and scaled.
-    fn told(spoil: impl Fn(f64, f64) -> (f64, f64), seen: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Vec<String> {
+    /// The warnings about a log at 100 Hz of a robot of 1 kHz, with noise of 0.05 mm and 2 mm/s. The platform goes to and fro; the first cable is shown
+    /// otherwise than it moves, and the position as it is measured at a time.
+    fn warnings(
+        spoil: impl Fn(f64, f64) -> (f64, f64),
+        measured: impl Fn(&dyn Fn(f64) -> Vector3<f64>, f64) -> Vector3<f64>,
+    ) -> Vec<String> {
         let robot = RobotFile::parse(EXAMPLE, "example").unwrap();
         let params = robot.params();
         let mut motions = Motions::new(&params);
-        motions.length_jump_m = f64::INFINITY;
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut noise = move || -> f64 { StandardNormal.sample(&mut random) };
         let position_m =
@@ -295,7 +351,7 @@ mod tests {
                 stamp_nanos: i64::from(row) * 10_000_000,
                 cables: &cables,
                 reference_force_n: &[],
-                pose: Some(pose(seen(position_m(time_s)))),
+                pose: Some(pose(measured(&position_m, time_s))),
                 outside_wrench: None,
             };
             motions.add(&sample);
@@ -303,23 +359,34 @@ mod tests {
         motions.warnings(&robot.cable_names())
     }
 
-    #[test]
-    fn a_sound_log_is_not_warned_of() {
-        assert_eq!(told(|length_m, speed| (length_m, speed), |at_m| at_m), [""; 0]);
-        // A drum of which 5 % more is wound, a zero that is unknown, and a pose that is off by 2 mm.
-        let worn = told(|length_m, speed| (1.05 * length_m + 3.0, speed), |at_m| at_m + Vector3::new(0.002, 0.0, 0.0));
-        assert_eq!(worn, [""; 0]);
+    type Position<'a> = &'a dyn Fn(f64) -> Vector3<f64>;
+
+    fn now(position_m: Position<'_>, time_s: f64) -> Vector3<f64> {
+        position_m(time_s)
     }
 
     #[test]
-    fn speeds_and_lengths_that_contradict_are_told_with_their_cause() {
-        let same = |at_m: Vector3<f64>| at_m;
+    fn a_sound_log_gets_no_warning() {
+        let same = |length_m: f64, speed: f64| (length_m, speed);
+        assert_eq!(warnings(same, now), [""; 0]);
+        // A drum of which 5 % more is wound, a zero that is unknown, and a pose that is off by 2 mm.
+        let offset = |position_m: Position<'_>, time_s: f64| position_m(time_s) + Vector3::new(0.002, 0.0, 0.0);
+        assert_eq!(warnings(|length_m, speed| (1.05 * length_m + 3.0, speed), offset), [""; 0]);
+        // Poses that are 0.2 s late, and a platform that rests while the cables change their length.
+        assert_eq!(warnings(same, |position_m, time_s| position_m(time_s - 0.2)), [""; 0]);
+        assert_eq!(warnings(same, |_, _| Vector3::zeros()), [""; 0]);
+    }
+
+    #[test]
+    fn speeds_and_lengths_that_contradict_are_reported_with_their_cause() {
         for (warnings, words) in [
-            (told(|length_m, speed| (length_m, -speed), same), "the speed is -1 times"),
-            (told(|length_m, speed| (length_m, 1e3 * speed), same), "mm/s beside a length in m"),
-            (told(|length_m, _| (length_m, 0.0), same), "the speed is 0 throughout"),
-            (told(|length_m, speed| (-length_m, -speed), same), "a length of the other sign"),
-            (told(|length_m, speed| (2.0 * length_m, 2.0 * speed), same), "a block that halves the motion"),
+            (warnings(|length_m, speed| (length_m, -speed), now), "the speed is -1 times"),
+            (warnings(|length_m, speed| (length_m, 1e3 * speed), now), "a speed in mm/s"),
+            (warnings(|length_m, _| (length_m, 0.0), now), "the speed is 0 throughout"),
+            (warnings(|length_m, speed| (-length_m, -speed), now), "a length of the other sign"),
+            (warnings(|length_m, speed| (2.0 * length_m, 2.0 * speed), now), "a block that halves the motion"),
+            (warnings(|length_m, speed| (1e3 * length_m, 1e3 * speed), now), "a length in mm"),
+            (warnings(|length_m, speed| (1.2 * length_m, 1.2 * speed), now), "a wrong radius of the drum"),
         ] {
             let [warning] = warnings.as_slice() else { panic!("{words}: {warnings:?}") };
             assert!(warning.starts_with("cable1: ") && warning.contains(words), "{words}: {warning}");
@@ -327,9 +394,43 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_that_is_turned_is_told_for_all_cables() {
-        let turned = told(|length_m, speed| (length_m, speed), |at_m| Vector3::new(at_m.y, -at_m.x, at_m.z));
+    fn a_frame_that_is_turned_is_reported_for_all_cables() {
+        let turned = warnings(
+            |length_m, speed| (length_m, speed),
+            |position_m, time_s| {
+                let at_m = position_m(time_s);
+                Vector3::new(at_m.y, -at_m.x, at_m.z)
+            },
+        );
         let [warning] = turned.as_slice() else { panic!("{turned:?}") };
         assert!(warning.contains("cable8: the changes of the length are not those"), "{warning}");
+    }
+
+    /// Two logs, of which the second has the other sign: the first does not make up for it.
+    #[test]
+    fn each_log_is_judged_by_itself() {
+        let robot = RobotFile::parse(EXAMPLE, "example").unwrap();
+        let mut motions = Motions::new(&robot.params());
+        for sign in [1.0, -1.0] {
+            motions.start();
+            for row in 0..1000_u32 {
+                let angle = 0.01 * f64::from(row);
+                let cable = CableInput {
+                    sensor_force_n: 1.0,
+                    length_m: 0.1 * angle.sin(),
+                    speed_m_per_s: 0.1 * sign * angle.cos(),
+                };
+                let sample = Sample {
+                    stamp_nanos: i64::from(row) * 10_000_000,
+                    cables: &[cable; 8],
+                    reference_force_n: &[],
+                    pose: None,
+                    outside_wrench: None,
+                };
+                motions.add(&sample);
+            }
+        }
+        let warnings = motions.warnings(&robot.cable_names());
+        assert!(warnings.len() == 1 && warnings[0].starts_with("log 2: cable1, "), "{warnings:?}");
     }
 }

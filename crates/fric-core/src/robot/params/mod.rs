@@ -92,14 +92,37 @@ fn check_length_noise(monitor: &MonitorOptions) -> Result<f64, ParamError> {
     Ok(length_noise_m)
 }
 
-/// Checks an inertia tensor: moments are not negative.
-fn check_inertia(inertia_kg_m2: [f64; 6]) -> Result<Matrix3<f64>, ParamError> {
-    const MOST_KG_M2: f64 = 1e9;
-    let [xx, xy, xz, yy, yz, zz] = inertia_kg_m2;
-    let check = |number: f64, least: f64| check("inertia_kg_m2", number, least, MOST_KG_M2);
-    let (xx, yy, zz) = (check(xx, 0.0)?, check(yy, 0.0)?, check(zz, 0.0)?);
-    let (xy, xz, yz) = (check(xy, -MOST_KG_M2)?, check(xz, -MOST_KG_M2)?, check(yz, -MOST_KG_M2)?);
-    Ok(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
+impl PlatformOptions {
+    /// Whether the inertia tensor can be that of a body: about no axis is its moment negative, by Sylvester's criterion but for rounding.
+    #[must_use]
+    pub fn is_inertia_of_a_body(&self) -> bool {
+        let [xx, xy, xz, yy, yz, zz] = self.inertia_kg_m2;
+        let trace = xx + yy + zz;
+        let minors = [xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz].map(|minor| minor / (trace * trace));
+        let determinant = self.inertia_tensor_kg_m2().determinant() / (trace * trace * trace);
+        let is_negative = |number: f64| number < -1e-12;
+        ![xx, yy, zz, determinant].into_iter().chain(minors).any(is_negative)
+    }
+
+    fn inertia_tensor_kg_m2(&self) -> Matrix3<f64> {
+        let [xx, xy, xz, yy, yz, zz] = self.inertia_kg_m2;
+        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+    }
+
+    fn check_inertia(&self) -> Result<Matrix3<f64>, ParamError> {
+        const MOST_KG_M2: f64 = 1e9;
+        for (number, least) in
+            self.inertia_kg_m2.into_iter().zip([0.0, -MOST_KG_M2, -MOST_KG_M2, 0.0, -MOST_KG_M2, 0.0])
+        {
+            check("inertia_kg_m2", number, least, MOST_KG_M2)?;
+        }
+        if self.is_inertia_of_a_body() {
+            return Ok(self.inertia_tensor_kg_m2());
+        }
+        let reason =
+            "is no tensor of a body, for about some axis its moment is negative; the order is [xx, xy, xz, yy, yz, zz]";
+        Err(ParamError::conflict("inertia_kg_m2", reason))
+    }
 }
 
 /// A checked robot, from which a [`Compensator`](crate::Compensator) is built.
@@ -145,7 +168,7 @@ impl<'a> RobotParams<'a> {
             cycle_s,
             mass_kg: check("mass_kg", platform.mass_kg, 0.0, 1e6)?,
             center_of_mass_m: check_point("center_of_mass_m", platform.center_of_mass_m)?,
-            inertia_kg_m2: check_inertia(platform.inertia_kg_m2)?,
+            inertia_kg_m2: platform.check_inertia()?,
             gravity_m_per_s2: check_point("gravity_m_per_s2", platform.gravity_m_per_s2)?,
             monitor: MonitorOptions { length_jump_m, length_noise_m, ..monitor },
             known_reference: None,

@@ -4,6 +4,7 @@ use crate::discover::report::Verdict;
 use crate::discover::result::{GeometryResult, WrenchComponent, WrenchGap};
 use crate::discover::wrench::Geometry;
 use crate::replay::WrenchReference;
+use crate::text::significant;
 
 /// What to do about a rest of the wrench that is of no cable.
 pub const FROM_OUTSIDE: &str =
@@ -48,10 +49,8 @@ impl WrenchGap {
             format!("Of the wrench {after} are left, where the noise is {noise}.")
         });
         let inertia = self.inertia_kg_m2.map(|[xx, _, _, yy, _, zz]| {
-            format!(
-                "Fitted with the friction: the platform's moments of inertia, {xx:.3}, {yy:.3} and {zz:.3} kg m² (inertia_kg_m2 in \
-                 the robot file)."
-            )
+            let [xx, yy, zz] = [xx, yy, zz].map(significant);
+            format!("The platform's moments of inertia by the log are {xx}, {yy} and {zz} kg m²; `-o` writes the tensor as inertia_kg_m2.")
         });
         let from_outside =
             self.is_of_no_cable.then(|| format!("No error of one cable's force accounts for it. {FROM_OUTSIDE}"));

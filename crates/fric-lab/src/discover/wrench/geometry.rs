@@ -14,6 +14,7 @@ use nalgebra::{Matrix3, Vector3, Vector6};
 
 use crate::fit::CableRecord;
 use crate::replay::WrenchReference;
+use crate::samples::noise::white_noise;
 use crate::weight::{Body, Motion};
 
 /// An entry of the robot file that may be wrong.
@@ -45,6 +46,9 @@ const STEP_RATIO: f64 = 1e-4;
 
 /// Minimum mass, as a fraction of the stated one. A platform without weight on slack cables is always in balance.
 const LEAST_MASS_RATIO: f64 = 0.1;
+
+/// Greatest noise of the angular acceleration, as a fraction of its square. A fit makes the moments too small by as much.
+const MOST_NOISE: f64 = 0.05;
 
 /// A correction is contradicted if it raises the variance of the lengths by more than this factor. In three logs of an
 /// independent simulator with forces from outside false points raise it 10⁴ times and more; a true one makes it 3000 times smaller.
@@ -127,6 +131,23 @@ impl<'a> Description<'a> {
         let mut motions = self.motions.iter().flatten();
         let is_turned = motions.any(|motion| motion.angular_acceleration_rad_per_s2.norm() > 0.0);
         (is_turned && self.size(of) > 0.0).then(|| (of, vec![0.0; of.count()])).into_iter().collect()
+    }
+
+    /// Whether the noise of the poses is little beside the angular accelerations: below [`MOST_NOISE`] of their square.
+    pub fn sees_turns(&self) -> bool {
+        let (mut squares, mut noise_squares) = (0.0, 0.0);
+        for axis in 0..3 {
+            let of = |motion: &Option<Motion>| {
+                motion.map_or(f64::NAN, |motion| motion.angular_acceleration_rad_per_s2[axis])
+            };
+            let series: Vec<f64> = self.motions.iter().map(of).filter(|number| number.is_finite()).collect();
+            let Some(noise) = white_noise(&series) else { return false };
+            #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
+            let count = series.len() as f64;
+            squares += series.iter().map(|number| number * number).sum::<f64>();
+            noise_squares += count * noise * noise;
+        }
+        noise_squares <= MOST_NOISE * squares
     }
 
     fn count(&self) -> usize {
@@ -345,7 +366,7 @@ fn length_variance_m2(params: &CableParams, record: &CableRecord<'_>, poses: &[O
 }
 
 /// Returns the entries of a symmetric tensor in the order of the robot file.
-fn entries(tensor: &Matrix3<f64>) -> [f64; 6] {
+pub fn entries(tensor: &Matrix3<f64>) -> [f64; 6] {
     [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|place| tensor[place])
 }
 

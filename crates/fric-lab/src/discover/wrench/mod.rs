@@ -37,7 +37,7 @@ use crate::fit::wrench::{ReferenceWrenches, first_model};
 use crate::fit::{CableRecord, FitError, Measurements, Progress, Stages};
 use crate::replay::{WrenchErrors, WrenchReference};
 use crate::samples::split::split;
-use crate::search::solve::{GROSS_CONTRADICTION, Unknown};
+use crate::search::solve::GROSS_CONTRADICTION;
 
 pub use geometry::Geometry;
 
@@ -159,10 +159,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
     all.blocks.iter_mut().for_each(|block| block.held_out = false);
     all.whitening = naming.whitening;
     let confirmed = |naming: &mut Naming| {
-        naming.confirmed(&all, |model| {
-            let fit = |bench: &Bench<'_>, model: &bench::Model| bench.fit(&with_given(bench, model), AT_MINIMUM);
-            reweighted(&all, fit(&all, model), fit)
-        })
+        naming.confirmed(&all, |model| reweighted(&all, fit_with_given(&all, model), fit_with_given))
     };
     let (mut fitted, mut whitening) = confirmed(&mut naming).ok_or_else(too_short)?;
     // Names that leave more of the wrench than there was stand for something that the whitening has taken for noise.
@@ -207,23 +204,24 @@ fn searched<'a>(
     Ok(naming)
 }
 
-/// Returns a model in which friction that the samples do not determine beside the names has its given values and is not varied, unless the samples
-/// contradict these.
+/// Fits a model in which friction that the samples do not determine beside the names has its given values; with these in what grossly contradicts the samples,
+/// it is varied too.
+fn fit_with_given(bench: &Bench<'_>, model: &bench::Model) -> Trial {
+    let held = bench.fit(&with_given(bench, model), AT_MINIMUM);
+    let most = GROSS_CONTRADICTION * bench.judged(model.clone()).training;
+    if held.training <= most { held } else { bench.fit(model, AT_MINIMUM) }
+}
+
+/// Returns a model in which friction that the samples do not determine beside the names has its given values and is not varied.
 fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
     let (_, all) = bench.with_problem(model, bench.used(false), |problem| {
         crate::certainty::undetermined::vagueness(problem, &model.values)
     });
     let mut held = model.clone();
-    let most = GROSS_CONTRADICTION * bench.judged(model.clone()).training;
-    let is_vague = |(vagueness, of): &(f64, Unknown)| *vagueness > 1.0 && of.parameter.effect().is_none();
-    for (_, of) in all.into_iter().filter(is_vague) {
+    for (_, of) in all.into_iter().filter(|(vagueness, of)| *vagueness > 1.0 && of.parameter.effect().is_none()) {
         let place = of.parameter.place();
-        let mut given = held.clone();
-        given.values[of.member][place] = bench.records[of.member].params.values()[place];
-        if bench.judged(given.clone()).training <= most {
-            given.free[of.member].retain(|free| *free != of.parameter);
-            held = given;
-        }
+        held.free[of.member].retain(|free| *free != of.parameter);
+        held.values[of.member][place] = bench.records[of.member].params.values()[place];
     }
     held
 }

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use fric_core::robot::PlatformOptions;
+use fric_core::robot::edit::PlatformEdit;
 use nalgebra::{DMatrix, Matrix6};
 
 use super::bench::{Bench, Model as WrenchModel, Trial, Unknown};
 use super::candidate::Candidate;
-use super::geometry::Geometry;
+use super::geometry::{Geometry, entries};
 use super::naming::{Named, Naming};
 use super::{Edits, GeometryFinding, WrenchDeviation, WrenchDiscovery, too_short};
 use crate::certainty::determined::HALF_INTERVAL;
@@ -88,12 +90,9 @@ impl Case<'_, '_> {
             numbers.and_then(|numbers| numbers.first_chunk::<3>().copied())
         };
         let count = bench.records.len();
-        let mut platform = description.platform_edit(changes);
-        platform.inertia_kg_m2 =
-            platform.inertia_kg_m2.filter(|_| self.is_tensor_determined(&covariance, &independent));
-        let inertia_kg_m2 = platform.inertia_kg_m2;
+        let inertia_kg_m2 = self.inertia_kg_m2(&[covariance.clone(), independent]);
         let edits = Edits {
-            platform,
+            platform: PlatformEdit { inertia_kg_m2, ..description.platform_edit(changes) },
             base_m: (0..count).map(|cable| point(Geometry::Base(cable))).collect(),
             platform_m: (0..count).map(|cable| point(Geometry::Attachment(cable))).collect(),
         };
@@ -118,24 +117,36 @@ impl Case<'_, '_> {
         })
     }
 
-    /// Whether every moment of the fitted inertia tensor is known to within half of it, as it is asked of a parameter: by its interval of 95 % and by the
-    /// greatest shift that an error of the friction could cause. Over few turns that is the greater part.
-    fn is_tensor_determined(&self, covariance: &DMatrix<f64>, independent: &DMatrix<f64>) -> bool {
+    /// Returns the fitted inertia tensor in the order of the file's key, if the log determines it and the file states none or another one. `covariances` are
+    /// those of [`Bench::covariances`].
+    ///
+    /// Each moment has to be known to within half of it, as it is asked of a parameter, by its interval of 95 % and by the greatest shift that an error of
+    /// the friction could cause; a log of few turns has a large one. Noise of the poses makes the moments too small, so there must be little.
+    fn inertia_kg_m2(&self, covariances: &[DMatrix<f64>; 2]) -> Option<[f64; 6]> {
         let Self { bench, fitted, .. } = *self;
-        let model = &fitted.model;
+        let (model, description) = (&fitted.model, &bench.description);
+        let tensor_kg_m2 = description.platform_edit(&model.changes).inertia_kg_m2?;
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-        let samples = bench.count(false) as f64;
+        let samples = (bench.count(false) + bench.count(true)) as f64;
         let believed = bench.believed_wrench(model, BELIEVED_RATIO, &vec![0.0; bench.records.len()]);
         let shift = (samples * believed.iter().map(|error| error * error).sum::<f64>()).sqrt();
-        let tensor = bench.description.corrected(Geometry::Inertia, &model.changes);
-        let is_known = |(column, unknown): (usize, Unknown)| match unknown {
-            Unknown::Geometry(Geometry::Inertia, number @ (0 | 3 | 5)) => {
-                let [error, scale] = [covariance, independent].map(|of| of[(column, column)].sqrt());
-                tensor.get(number).is_some_and(|moment| HALF_INTERVAL * error + shift * scale < 0.5 * moment)
-            }
-            _ => true,
-        };
-        model.unknowns().into_iter().enumerate().all(is_known)
+        let half_widths: Vec<f64> = model
+            .unknowns()
+            .iter()
+            .enumerate()
+            .filter(|(_, unknown)| matches!(unknown, Unknown::Geometry(Geometry::Inertia, _)))
+            .map(|(column, _)| covariances.each_ref().map(|of| of[(column, column)].sqrt()))
+            .map(|[error, independent]| HALF_INTERVAL * error + shift * independent)
+            .collect();
+        let is_known = |moment: usize| half_widths.get(moment).is_some_and(|half| *half < 0.5 * tensor_kg_m2[moment]);
+        let given_kg_m2 = entries(&description.robot.inertia_kg_m2());
+        let differs = (0..tensor_kg_m2.len()).any(|number| {
+            half_widths.get(number).is_some_and(|half| (tensor_kg_m2[number] - given_kg_m2[number]).abs() > *half)
+        });
+        let is_tensor =
+            PlatformOptions { inertia_kg_m2: tensor_kg_m2, ..PlatformOptions::default() }.is_inertia_of_a_body();
+        ([0, 3, 5].into_iter().all(is_known) && differs && is_tensor && description.sees_turns())
+            .then_some(tensor_kg_m2)
     }
 
     /// Returns the result of one cable.
