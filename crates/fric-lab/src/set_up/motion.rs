@@ -49,29 +49,29 @@ const LENGTH_CAUSES: [(f64, &str); 7] = [
 #[derive(Clone, Copy, Debug)]
 struct Sums<const COUNT: usize> {
     count: f64,
-    sums: [f64; COUNT],
+    totals: [f64; COUNT],
     products: [[f64; COUNT]; COUNT],
 }
 
 impl<const COUNT: usize> Default for Sums<COUNT> {
     fn default() -> Self {
-        Self { count: 0.0, sums: [0.0; COUNT], products: [[0.0; COUNT]; COUNT] }
+        Self { count: 0.0, totals: [0.0; COUNT], products: [[0.0; COUNT]; COUNT] }
     }
 }
 
 impl<const COUNT: usize> Sums<COUNT> {
     fn add(&mut self, sample: [f64; COUNT]) {
         self.count += 1.0;
-        for ((sum, products), one) in self.sums.iter_mut().zip(&mut self.products).zip(sample) {
-            *sum += one;
+        for ((total, products), one) in self.totals.iter_mut().zip(&mut self.products).zip(sample) {
+            *total += one;
             products.iter_mut().zip(sample).for_each(|(product, other)| *product += one * other);
         }
     }
 
     /// Returns the same with products about the means.
     fn centred(mut self) -> Self {
-        for (products, one) in self.products.iter_mut().zip(self.sums) {
-            for (product, other) in products.iter_mut().zip(self.sums) {
+        for (products, one) in self.products.iter_mut().zip(self.totals) {
+            for (product, other) in products.iter_mut().zip(self.totals) {
                 *product -= one * other / self.count.max(1.0);
             }
         }
@@ -188,7 +188,7 @@ impl Motions {
         let mut lines: Vec<(usize, String, Vec<&str>)> = Vec::new();
         for (log, problem, cable) in self.all_problems() {
             let Some(name) = names.get(cable) else { continue };
-            match lines.iter_mut().find(|(other, what, _)| (*other, &*what) == (log, &problem)) {
+            match lines.iter_mut().find(|(other, what, _)| (*other, &**what) == (log, problem.as_str())) {
                 Some((.., names)) => names.push(name),
                 None => lines.push((log, problem, vec![name])),
             }
