@@ -34,7 +34,7 @@ fn text() -> String {
 }
 
 fn orientation(time_s: f64) -> UnitQuaternion<f64> {
-    let [x, y, z] = [(0.73, 0.3), (0.61, 1.4), (0.87, 2.2)].map(|(hz, phase)| 0.03 * (TAU * hz * time_s + phase).sin());
+    let [x, y, z] = [(0.83, 0.3), (0.79, 1.4), (0.95, 2.2)].map(|(hz, phase)| 0.03 * (TAU * hz * time_s + phase).sin());
     UnitQuaternion::from_scaled_axis(Vector3::new(x, y, z))
 }
 
