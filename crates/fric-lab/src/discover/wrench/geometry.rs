@@ -12,7 +12,6 @@ use fric_core::robot::edit::PlatformEdit;
 use fric_core::{CableParams, Pose};
 use nalgebra::{Matrix3, Vector3, Vector6};
 
-use crate::fit::CableRecord;
 use crate::replay::WrenchReference;
 use crate::samples::noise::white_noise;
 use crate::weight::{Body, Motion};
@@ -49,13 +48,6 @@ const LEAST_MASS_RATIO: f64 = 0.1;
 
 /// Greatest noise of the angular acceleration, as a fraction of its square. A fit makes the moments too small by as much.
 const MOST_NOISE: f64 = 0.05;
-
-/// A correction is contradicted if it raises the variance of the lengths by more than this factor. On the recording of a real robot, whose poses come from
-/// lengths and an inclinometer by the points of its file, points that halve the rest of the torque raise it 4 to 40 times; in logs of an independent
-/// simulator with forces from outside false points raise it 10⁴ times and more. Half and twice this factor give the same.
-const CONTRADICTED: f64 = 100.0;
-/// Deviation of the lengths, m, below which nothing is contradicted.
-const EXACT_M: f64 = 1e-5;
 
 impl Geometry {
     /// Returns its key in the robot file.
@@ -176,7 +168,7 @@ impl<'a> Description<'a> {
     }
 
     /// Returns a cable with corrected geometry; `None` if nothing of it is corrected.
-    fn moved(&self, cable: usize, changes: &Changes) -> Option<CableParams> {
+    pub fn moved(&self, cable: usize, changes: &Changes) -> Option<CableParams> {
         let of = |geometry: Geometry| changes.get(&geometry).map(Vec::as_slice);
         let (base, attachment) = (of(Geometry::Base(cable)), of(Geometry::Attachment(cable)));
         if base.is_none() && attachment.is_none() {
@@ -306,22 +298,6 @@ impl<'a> Description<'a> {
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
-    /// Whether the lengths of the log contradict the correction of a cable's point: with it they differ from those of the poses by far more than without. A
-    /// force from outside that goes with the pose looks like a wrong point to the wrench, but not to the lengths.
-    pub fn is_contradicted(&self, of: Geometry, changes: &Changes, records: &[CableRecord<'_>]) -> bool {
-        let Some((cable, record)) = of.cable().and_then(|cable| Some((cable, records.get(cable)?))) else {
-            return false;
-        };
-        let mut without = changes.clone();
-        without.remove(&of);
-        let variance_m2 = |changes: &Changes| {
-            let params = self.moved(cable, changes).or_else(|| self.robot.cables().get(cable).copied())?;
-            length_variance_m2(&params, record, self.poses)
-        };
-        let with_and_without = variance_m2(changes).zip(variance_m2(&without));
-        with_and_without.is_some_and(|(with, without)| with > CONTRADICTED * without.max(EXACT_M * EXACT_M))
-    }
-
     /// Whether an entry is corrected by more than can be.
     pub fn is_at_end(&self, of: Geometry, changes: &Changes) -> bool {
         of == Geometry::Mass && self.mass_kg(changes) < LEAST_MASS_RATIO * self.robot.mass_kg()
@@ -337,33 +313,6 @@ impl<'a> Description<'a> {
         };
         ratio * self.size(of)
     }
-}
-
-/// Returns the variance of the logged length minus that of the poses, m², each stretch without a gap about its own mean: the zero of a length is not known.
-/// `None` if nothing can be compared.
-fn length_variance_m2(params: &CableParams, record: &CableRecord<'_>, poses: &[Option<Pose>]) -> Option<f64> {
-    let (mut squares, mut total) = (0.0, 0.0);
-    for (start, rows) in record.logs() {
-        let (mut sum, mut sum_of_squares, mut count, mut shown_m) = (0.0, 0.0, 0.0, 0.0);
-        let mut end = |[sum, sum_of_squares, count]: [f64; 3]| {
-            if count > 1.0 {
-                squares += sum_of_squares - sum * sum / count;
-                total += count;
-            }
-        };
-        for (row, pose) in rows.iter().zip(poses.iter().skip(start)) {
-            shown_m += row.signals.displacement_m;
-            let known_m = pose.as_ref().filter(|_| row.is_sound()).and_then(|pose| params.length_m(pose));
-            let Some(apart_m) = known_m.map(|known_m| shown_m - known_m).filter(|apart_m| apart_m.is_finite()) else {
-                end([sum, sum_of_squares, count]);
-                (sum, sum_of_squares, count, shown_m) = (0.0, 0.0, 0.0, 0.0);
-                continue;
-            };
-            (sum, sum_of_squares, count) = (sum + apart_m, sum_of_squares + apart_m * apart_m, count + 1.0);
-        }
-        end([sum, sum_of_squares, count]);
-    }
-    (total > 0.0).then(|| squares / total)
 }
 
 /// Returns the entries of a symmetric tensor in the order of the robot file.

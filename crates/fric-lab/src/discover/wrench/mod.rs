@@ -12,6 +12,7 @@ mod bench;
 mod candidate;
 mod covariance;
 mod geometry;
+mod lengths;
 mod naming;
 mod report;
 mod screen;
