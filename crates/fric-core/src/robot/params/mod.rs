@@ -98,10 +98,11 @@ impl PlatformOptions {
     pub fn is_inertia_of_a_body(&self) -> bool {
         let [xx, xy, xz, yy, yz, zz] = self.inertia_kg_m2;
         let trace = xx + yy + zz;
-        let minors = [xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz].map(|minor| minor / (trace * trace));
-        let determinant = self.inertia_tensor_kg_m2().determinant() / (trace * trace * trace);
-        let is_negative = |number: f64| number < -1e-12;
-        ![xx, yy, zz, determinant].into_iter().chain(minors).any(is_negative)
+        let rounding = 1e-12 * trace * trace;
+        let minors = [xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz];
+        xx.min(yy).min(zz) >= 0.0
+            && minors.iter().all(|minor| *minor >= -rounding)
+            && self.inertia_tensor_kg_m2().determinant() >= -rounding * trace
     }
 
     fn inertia_tensor_kg_m2(&self) -> Matrix3<f64> {
