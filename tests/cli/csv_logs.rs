@@ -249,6 +249,31 @@ fn a_length_of_the_other_sign_is_told() {
     assert!(run.stderr.contains("a length of the wrong sign"), "{run:#?}");
 }
 
+/// A cable that never moves, or whose sensor shows nothing, says nothing about friction: neither `info` promises a fit nor `replay` judges the model by it.
+#[test]
+fn a_cable_that_rests_or_has_no_force_is_told() {
+    let place = Place::empty();
+    place.write(
+        "bench.toml",
+        "format = 'fric-robot/1'\nname = 'bench'\ncycle_s = 0.001\n[[cable]]\nname = 'winch'\npulleys = [{ wrap_deg = 90.0 }]\n\
+         friction = { mu = 0.02, sigma_n_per_m = 5000.0 }\n",
+    );
+    let table = |force: &str, length: &dyn Fn(u32) -> f64| {
+        let row = |row: u32| format!("{:.3},{force},{:.6},20\n", f64::from(row) * 1e-3, length(row));
+        let rows: String = (0..9000).map(row).collect();
+        format!("time_s,winch.force_n,winch.length_m,winch.reference_n\n{rows}")
+    };
+    place.write("rests.csv", table("19.7", &|_| 0.5));
+    place.write("silent.csv", table("", &|row| 0.5 + 0.1 * (1e-3 * f64::from(row)).sin()));
+    let never = "the length of winch never changes";
+    place.run(&["replay", "rests.csv", "--model", "bench.toml"]).warns(&[never]);
+    place.run_in_vain(&["fit", "rests.csv", "--model", "bench.toml", "-o", "f.toml"]).fails(1, &[never]);
+    let info = place.run(&["info", "rests.csv", "--model", "bench.toml"]).succeeds();
+    assert!(unwrapped(&info.stdout).contains(&format!("fit: forces impossible {never}")), "{info:#?}");
+    let run = place.run(&["replay", "silent.csv", "--model", "bench.toml"]);
+    assert!(run.stdout.starts_with("Nothing is compensated: the log has no force of any sensor."), "{run:#?}");
+}
+
 #[test]
 fn rows_that_are_not_in_order_are_told() {
     let place = Place::with_log();

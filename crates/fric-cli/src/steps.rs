@@ -24,12 +24,19 @@ impl StepResult {
     }
 }
 
-/// Formats steps as a table. Several reasons that a step above has as well are not repeated.
+/// Length of a reason that fits into its line and so is as well read again.
+const SHORT: usize = 48;
+
+/// Formats steps as a table. Reasons that a step above has as well are not repeated, unless they are short.
 pub fn step_table(title: &str, steps: &[StepResult]) -> String {
     let row = |(place, step): (usize, &StepResult)| {
         let possible = if step.possible { "possible" } else { "impossible" };
-        let alike = steps.iter().take(place).find(|above| step.reasons.len() > 1 && above.reasons == step.reasons);
-        let reasons = alike.map_or_else(|| step.reasons.join("; "), |above| format!("as `{}`", above.step));
+        let alike = steps.iter().take(place).find(|above| above.reasons == step.reasons);
+        let reasons = step.reasons.join("; ");
+        let reasons = match alike {
+            Some(above) if reasons.len() > SHORT => format!("as `{}`", above.step),
+            _ => reasons,
+        };
         [step.step.to_owned(), possible.to_owned(), reasons]
     };
     table_with_text(&[title, "", ""], 3, &steps.iter().enumerate().map(row).collect::<Vec<_>>())

@@ -200,6 +200,8 @@ fn bad_files() -> Vec<Bad> {
         bad("\"stribeck\"", "\"stribek\"", 27, &["`stribek`", "did you mean `stribeck`?", "`time_delay`", "cable1"]),
         bad("per_pulley\"", "per_puley\"", 20, &["`per_puley`", "did you mean `per_pulley`?", "`presliding`"]),
         bad("wrap = \"pose\"", "wrap = \"poses\"", 24, &["`poses`", "did you mean `pose`?", "`wrap`"]),
+        bad("wrap = \"pose\"", "wrap = 90.0", 24, &["`wrap` is 90.0", "text in quotes"]),
+        bad("\"per_pulley\"", "2", 20, &["`presliding` is 2", "text in quotes"]),
         bad("mu = 0.019", "zzz = 1.0", 26, &["`zzz`", "`viscous_n_s_per_m`"]),
         // A list of the values of a table has no stated order.
         bad(

@@ -11,7 +11,7 @@ use fric_log::signals::LengthPoses;
 use hdrhistogram::{CreationError, Histogram};
 use serde::Serialize;
 
-use crate::verdict::left_in_words;
+use crate::verdict::{counted, left_in_words};
 
 /// Cycle times in bounded memory.
 #[derive(Clone, Debug)]
@@ -95,7 +95,10 @@ pub struct CableResult {
     pub samples: u64,
     /// Number of cycles with any flag.
     pub flagged: u64,
-    /// Error without friction compensation; `None` without a reference.
+    /// Whether its sensor has shown any force.
+    #[serde(skip)]
+    pub is_measured: bool,
+    /// Error without friction compensation; `None` without a reference, or if the sensor has no value at all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub before: Option<ForceError>,
     /// Error of the compensated force.
@@ -130,8 +133,9 @@ impl ReplayResult {
             name: name.to_owned(),
             samples: replay.cycle_count(),
             flagged: errors.flagged_count,
-            before: ForceError::of(&errors.before_n),
-            after: ForceError::of(&errors.after_n),
+            is_measured: errors.is_measured(),
+            before: ForceError::of(&errors.before_n).filter(|_| errors.is_measured()),
+            after: ForceError::of(&errors.after_n).filter(|_| errors.is_measured()),
             faults: Vec::new(),
         };
         let (before, after) = replay.wrench();
@@ -191,7 +195,7 @@ impl ReplayResult {
         let has_errors = self.cables.iter().any(|cable| cable.before.is_some());
         let what = if has_errors { "force at the platform against the reference" } else { "force at the platform" };
         let verdict = wrapped("", &self.verdict().sentence);
-        let mut text = format!("{verdict}\n{}: {what}, {count} samples\n\n", self.robot);
+        let mut text = format!("{verdict}\n{}: {what}, {}\n\n", self.robot, counted(count, "sample"));
         text += &table(&header, 1, &rows);
         text += &recording_lines(self.cables.iter().map(|cable| (cable.name.as_str(), cable.faults.as_slice())));
         if let Some(wrench) = &self.wrench {
@@ -201,8 +205,9 @@ impl ReplayResult {
         text += &self.pose.as_ref().map_or_else(String::new, PoseResult::line);
         let [median, p999, max] = [median_ns, p999_ns, max_ns].map(duration);
         text + &format!(
-            "\n{count} cycles; one takes {median} (median), {p999} (99.9 %), {max} (longest)\n\
-             on this computer, which is not a real-time machine.\n"
+            "\n{}; one takes {median} (median), {p999} (99.9 %), {max} (longest)\n\
+             on this computer, which is not a real-time machine.\n",
+            counted(count, "cycle")
         )
     }
 }

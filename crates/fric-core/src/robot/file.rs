@@ -18,7 +18,7 @@ use thiserror::Error;
 use super::locate::{Line, Step, line_of, read_tables};
 use super::log_columns;
 pub use super::log_columns::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
-use super::read::{exactly, exactly_if_given, table, table_if_given, tables, tables_by_key};
+use super::read::{exactly, exactly_if_given, table, table_if_given, tables, tables_by_key, word, word_if_given};
 pub use super::reference::{KnownReferenceTable, ReferenceTable};
 use super::{CableParams, MOST_CABLES, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
 use crate::effects::Effect;
@@ -163,7 +163,7 @@ pub struct CableTable {
     #[serde(default, deserialize_with = "exactly_if_given")]
     pub platform_m: Option<[f64; 3]>,
     /// `"per_pulley"` or `"lumped"`.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "word")]
     pub presliding: PreslidingName,
     /// Pulleys from the winch to the platform.
     #[serde(deserialize_with = "tables")]
@@ -199,6 +199,7 @@ pub struct PulleyTable {
     /// Fixed wrap angle, degrees.
     pub wrap_deg: Option<f64>,
     /// `"pose"`.
+    #[serde(default, deserialize_with = "word_if_given")]
     pub wrap: Option<WrapName>,
     /// Radius, m.
     pub radius_m: Option<f64>,

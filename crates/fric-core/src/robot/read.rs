@@ -1,4 +1,4 @@
-//! Deserialisers where `serde`'s own are too lenient or report no position: tables, number lists of fixed length, effects.
+//! Deserialisers where `serde`'s own are too lenient or report no position: tables, number lists of fixed length, words, effects.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -7,7 +7,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, Error, IntoDeserializer as _, MapAccess, SeqAccess, Visitor};
 
 use super::file::EffectTable;
 
@@ -67,6 +67,22 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for Table<T> {
     fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<T, A::Error> {
         T::deserialize(MapAccessDeserializer::new(table))
     }
+}
+
+/// One of the words of an enumeration: `serde`'s own message for anything else does not say what was found.
+///
+/// # Errors
+/// Of the deserializer, where there is no text or none of the words.
+pub fn word<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    T::deserialize(String::deserialize(deserializer)?.into_deserializer())
+}
+
+/// The same for a key that may be left out.
+///
+/// # Errors
+/// As [`word`].
+pub fn word_if_given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    word(deserializer).map(Some)
 }
 
 /// So many numbers and no more: `serde`'s own arrays pass over what is too much.

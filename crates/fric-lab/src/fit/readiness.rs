@@ -37,6 +37,18 @@ struct CableHoldings {
     signalled: u64,
     tension: Tension,
     referenced: u64,
+    /// The first length, m.
+    length_m: Option<f64>,
+    /// Whether the length ever was another one.
+    moved: bool,
+}
+
+impl CableHoldings {
+    fn add_length(&mut self, length_m: f64) {
+        if length_m.is_finite() {
+            self.moved |= (*self.length_m.get_or_insert(length_m) - length_m).abs() > 0.0;
+        }
+    }
 }
 
 /// The sign of the forces that a sensor shows.
@@ -55,6 +67,11 @@ impl Tension {
             self.negative += u64::from(force_n < 0.0);
             self.sum_n += force_n;
         }
+    }
+
+    /// Whether any force was added.
+    pub fn is_known(&self) -> bool {
+        self.count > 0
     }
 
     fn join(&mut self, other: &Self) {
@@ -106,6 +123,7 @@ impl Holdings {
         {
             holdings.signalled += u64::from(input.sensor_force_n.is_finite() && input.length_m.is_finite());
             holdings.tension.add(input.sensor_force_n);
+            holdings.add_length(input.length_m);
             holdings.referenced += u64::from(reference_n.is_finite());
         }
     }
@@ -121,6 +139,8 @@ impl Holdings {
             cable.signalled += other.signalled;
             cable.tension.join(&other.tension);
             cable.referenced += other.referenced;
+            cable.length_m = cable.length_m.or(other.length_m);
+            cable.moved |= other.moved;
         }
     }
 
@@ -222,6 +242,7 @@ impl Lack {
 
 const SILENT_ADVICE: &str =
     "Compare the names of the cables in the log with those in the robot file; if they agree, all values are gaps.";
+const STILL_ADVICE: &str = "Record strokes in both directions, best the run of `fric-cli excite`; if the cable did move, look for its length in the log.";
 const SENSOR_ADVICE: &str =
     "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the platform.";
 const COLUMN_ADVICE: &str = "Name their columns under `[log.columns]` in the robot file, such as \"cable1.reference_n\" = { column = \"Load cell [N]\" }, or a force that is known as `reference` under `[log]`.";
@@ -293,6 +314,12 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Re
             None => (SENSOR_ADVICE, None),
         };
         readiness.lacks.push(Lack { cause: cause + &of(&names, &cables), advice, instead, cables });
+    }
+    let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|of| !of.moved));
+    if !cables.is_empty() {
+        let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
+        let cause = format!("the length of {} never changes", listed.join(", "));
+        readiness.lacks.push(Lack { cause, advice: STILL_ADVICE, instead: None, cables });
     }
     let follows_pose = |cable: usize| params.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
     let cables = if holdings.posed == 0 { without(&readiness, &follows_pose) } else { Vec::new() };

@@ -45,6 +45,12 @@ impl CableErrors {
     fn new(cable: &CableParams) -> Self {
         Self { set_up: SetUp::new(cable.frictionless_gain()), ..Self::default() }
     }
+
+    /// Whether the sensor has shown any force.
+    #[must_use]
+    pub fn is_measured(&self) -> bool {
+        self.tension.is_known()
+    }
 }
 
 /// The accumulated errors of the wrench.

@@ -72,6 +72,14 @@ impl Replay {
             let names = names.join(", ");
             warnings.push(format!("{NEGATIVE_FORCE} of {names}. {}", NEGATIVE_ADVICE.trim_end_matches('.')));
         }
+        let still: Vec<&str> =
+            self.motions.still().into_iter().filter_map(|cable| robot.cable_names().get(cable).copied()).collect();
+        if !still.is_empty() {
+            warnings.push(format!(
+                "the length of {} never changes; friction is that of motion, so that nothing is compensated there",
+                still.join(", ")
+            ));
+        }
         let silent = CableStatus::SENSOR_NOT_FINITE | CableStatus::MOTION_NOT_FINITE;
         let total = self.cycle_count();
         for (count, flags, names) in flagged {

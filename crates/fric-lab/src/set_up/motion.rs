@@ -199,6 +199,14 @@ impl Motions {
         };
         lines.into_iter().map(line).collect()
     }
+
+    /// Returns the cables whose length is the same in every sample of the present log.
+    pub fn still(&self) -> Vec<usize> {
+        let is_still = |(_, motion): &(CableParams, CableMotion)| {
+            motion.range_m.is_some_and(|[least_m, greatest_m]| least_m >= greatest_m)
+        };
+        (0..self.cables.len()).filter(|cable| self.cables.get(*cable).is_some_and(is_still)).collect()
+    }
 }
 
 impl CableMotion {

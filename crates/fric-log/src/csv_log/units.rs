@@ -21,6 +21,9 @@ struct Sizes {
 pub(super) struct Units {
     sizes: [Sizes; 3],
     last_stamp_nanos: Option<i64>,
+    /// Number of rows with a time, and of those with the time of the row before.
+    timed_count: u64,
+    repeated_count: u64,
     /// The shortest time from one row to the next.
     least_interval_nanos: Option<u64>,
     time_has_factor: bool,
@@ -91,10 +94,13 @@ impl Units {
     /// Adds the time of a row; `is_plain` if the file has it in seconds.
     pub fn add_stamp(&mut self, stamp_nanos: i64, is_plain: bool) {
         self.time_has_factor |= !is_plain;
-        if let Some(last_nanos) = self.last_stamp_nanos.replace(stamp_nanos)
-            && last_nanos != stamp_nanos
-        {
+        self.timed_count += 1;
+        if let Some(last_nanos) = self.last_stamp_nanos.replace(stamp_nanos) {
             let interval_nanos = stamp_nanos.abs_diff(last_nanos);
+            if interval_nanos == 0 {
+                self.repeated_count += 1;
+                return;
+            }
             self.least_interval_nanos =
                 Some(self.least_interval_nanos.map_or(interval_nanos, |least| least.min(interval_nanos)));
         }
@@ -114,7 +120,13 @@ impl Units {
         let mut warnings = Vec::new();
         #[expect(clippy::cast_precision_loss, reason = "a duration for people")]
         let interval_s = self.least_interval_nanos.map_or(0.0, |nanos| nanos as f64 * 1e-9);
-        if interval_s > GREAT_INTERVAL_S
+        if 2 * self.repeated_count > self.timed_count {
+            warnings.push(format!(
+                "{} of {} rows have the time of the row before, without which they are left out: the time has too few digits for the rate, or it is that of \
+                 another column",
+                self.repeated_count, self.timed_count
+            ));
+        } else if interval_s > GREAT_INTERVAL_S
             && let Some(unit) = TimeUnit::of(interval_s, GREAT_INTERVAL_S)
         {
             let advice = if self.time_has_factor { FACTOR_ADVICE } else { unit.advice() };

@@ -248,6 +248,15 @@ fn values_that_look_like_another_unit_are_warned_of() {
 }
 
 #[test]
+fn a_time_with_too_few_digits_is_no_slow_clock() {
+    let rows =
+        |count: u32| -> String { (0..count).map(|row| format!("{},1,{}\n", 1_700_000_000 + row / 4, row)).collect() };
+    let read = read(&format!("time_s,a.force_n,a.length_m\n{}", rows(12)));
+    read.warns(&["9 of 12 rows have the time of the row before", "too few digits"]);
+    assert!(read.warnings.iter().all(|text| !text.contains("milliseconds")), "{:?}", read.warnings);
+}
+
+#[test]
 fn several_files_are_parts_of_one_log_and_no_other_kind_stands_among_them() {
     let header = "time_s,a.force_n,a.length_m\n";
     let (late, early) = (format!("{header}2,1,2\n3,1,2\n"), "a.length_m,time_s,a.force_n\n2,0,1\n2,1,1\n");

@@ -10,7 +10,7 @@ use super::series::{Channel, Extent, Series};
 use super::{Page, number};
 use crate::provenance::Provenance;
 use crate::replay::ReplayResult;
-use crate::verdict::left_in_words;
+use crate::verdict::{counted, left_in_words};
 
 /// Colors of cables in a common plot; later ones are dashed.
 pub(super) const COLORS: [&str; 8] = ["c0", "c1", "c2", "c3", "c4", "c5", "c6", "c7"];
@@ -32,7 +32,7 @@ pub fn page(result: &ReplayResult, series: &Series, provenance: &Provenance) -> 
         }
         @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
         p.soft {
-            (result.cycle.count) " cycles; one takes " (duration(result.cycle.median_ns)) " (median), "
+            (counted(result.cycle.count, "cycle")) "; one takes " (duration(result.cycle.median_ns)) " (median), "
             (duration(result.cycle.p999_ns)) " (99.9 %), " (duration(result.cycle.max_ns)) " (longest)."
         }
         @for (index, (cable, deviation)) in result.cables.iter().zip(deviations).enumerate() {

@@ -133,8 +133,11 @@ impl ReplayResult {
             }
             (None, Some(left)) => (
                 Tone::Bad,
-                format!("Compensation hardly helps: it leaves {left}. Most of that is not this model's friction."),
+                format!("Compensation hardly helps: it leaves {left}. Friction by these values makes little of it."),
             ),
+            (None, None) if self.cables.iter().all(|cable| !cable.is_measured) => {
+                (Tone::Bad, "Nothing is compensated: the log has no force of any sensor.".to_owned())
+            }
             (None, None) => (
                 Tone::Mixed,
                 "The forces are compensated, but how well is not known: the log has nothing to compare them with."
@@ -146,7 +149,7 @@ impl ReplayResult {
 
     fn todo(&self, tone: Tone, is_uncompared: bool) -> Vec<String> {
         let mut todo = Vec::new();
-        if is_uncompared {
+        if is_uncompared && self.cables.iter().any(|cable| cable.is_measured) {
             todo.push(
                 "Record the force at the platform, or state one that is known as `reference` under `[log]` in the robot file, to learn how \
                  well the model fits."
@@ -199,12 +202,15 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     let (fitted, it) = fitted(result);
     let worse = worse(&all);
     let it = if worse.is_some() { format!("elsewhere {it}") } else { it.to_owned() };
-    let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}."));
+    let least = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(1.0, f64::min);
+    let nothing = if !all.is_empty() && least > HARDLY_HELPS { " It explains next to nothing." } else { "" };
+    let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}.{nothing}"));
     let left = of_zeros(result).map_or(left.clone(), |zeros| format!("{left} {zeros}"));
     let (tone, sentence) = match worse {
         Some(worse) => (Tone::Bad, format!("{worse} {left}")),
         None if greatest <= WORKS => (Tone::Well, left),
-        None => (Tone::Mixed, left),
+        None if nothing.is_empty() => (Tone::Mixed, left),
+        None => (Tone::Bad, left),
     };
     let mut todo = Vec::new();
     for (cables, names) in grouped(result, |cable| &cable.undetermined) {

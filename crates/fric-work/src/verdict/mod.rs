@@ -6,6 +6,8 @@ mod compensation;
 mod discovery;
 mod manipulator;
 
+use std::fmt;
+
 pub use compensation::{left_in_words, of_fit, of_hysteresis};
 pub use discovery::of_discovery;
 pub use manipulator::{of_calibration, of_hole, of_hole_frictions, of_shapes, of_tendon, of_tendon_fit};
@@ -34,6 +36,6 @@ pub struct Verdict {
 
 /// Formats a number of things, such as "1 cable" or "2 cables".
 #[must_use]
-pub fn counted(count: usize, thing: &str) -> String {
-    if count == 1 { format!("{count} {thing}") } else { format!("{count} {thing}s") }
+pub fn counted<T: Copy + fmt::Display + From<u8> + PartialEq>(count: T, thing: &str) -> String {
+    if count == T::from(1) { format!("{count} {thing}") } else { format!("{count} {thing}s") }
 }
