@@ -9,7 +9,7 @@ use fric_core::robot::{CableOptions, FrictionOptions, Presliding, PulleyOptions}
 use fric_core::{CableInput, CableStatus, Compensator, CycleInput};
 
 use crate::random::Random;
-use crate::support::{GUIDE_90, SENSOR_180, UNMONITORED, assert_near, bisect, compensator};
+use crate::support::{GUIDE_90, SENSOR_180, UNMONITORED, assert_near, bisect, checked, compensator, corner_cable};
 
 /// \[P\] 5, 6, 8: what the tension behind a pulley lacks to be the one before it plus bearing friction.
 fn imbalance(downstream_n: f64, upstream_n: f64, mu: f64, wrap_rad: f64, viscous: f64, speed: f64) -> f64 {
@@ -291,4 +291,15 @@ fn a_slip_limit_does_not_touch_a_cable_without_one() {
             }
         }
     }
+}
+
+/// f_c/σ of one Dahl state: the pulley with the greatest wrap of a chain, or all of them together; a wrap that follows the pose counts as 90°.
+#[test]
+fn the_longest_memory_is_that_of_the_greatest_wrap() {
+    let factors = [2.0, std::f64::consts::SQRT_2, std::f64::consts::SQRT_2];
+    let (mu, sigma_n_per_m) = (0.03, 700.0);
+    let memory = |presliding| checked(&[corner_cable(0, presliding)])[0].memory_m_per_n(mu, sigma_n_per_m);
+    // The sensor at 180° shows twice the tension; each of three contacts has a third of the stiffness.
+    assert_near(memory(Presliding::PerPulley), 3.0 * 0.5 * mu * factors[0] / sigma_n_per_m, 1e-15);
+    assert_near(memory(Presliding::Lumped), 0.5 * mu * factors.iter().sum::<f64>() / sigma_n_per_m, 1e-15);
 }

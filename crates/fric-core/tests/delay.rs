@@ -1,9 +1,12 @@
 //! The delay line against linear interpolation of the whole history.
 
 use fric_core::effects::time_delay::{Delay, DelayLine, MAX_DELAY_CYCLES, MAX_LEAD_CYCLES};
+use fric_core::effects::{Effect, EffectParams};
+use fric_core::robot::{CableOptions, FrictionOptions};
+use fric_core::{CableInput, CycleInput};
 
 use crate::random::Random;
-use crate::support::assert_near;
+use crate::support::{FRICTION, GUIDE_90, UNMONITORED, assert_near, compensator};
 
 #[test]
 #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "small numbers")]
@@ -92,4 +95,30 @@ fn nothing_is_extrapolated_around_a_cycle_out_of_order() {
     }
     // 3·5 − 3·4 + 3.
     assert_eq!(leads(5.0, true), 6.0);
+}
+
+/// A lead rests on the cycles before; after a pause that is reported, it waits until they follow one another again.
+#[test]
+fn a_lead_waits_after_a_pause() {
+    let mut effects = EffectParams::default();
+    effects.set(Effect::TimeDelay, "delay_s", -0.002).unwrap();
+    let friction = FrictionOptions { mu: 0.0, viscous_n_s_per_m: 3.0, offset_n: 0.0, ..FRICTION };
+    let options = [CableOptions { friction, effects, ..CableOptions::new(&[GUIDE_90]) }];
+    for (elapsed_cycles, leads) in [(1.0, true), (5.0, false)] {
+        let mut compensator = compensator::<1>(&options, UNMONITORED);
+        for cycle in 0..100 {
+            let time_s = f64::from(cycle) * 1e-3;
+            // A steady acceleration, which the lead follows.
+            let speed_m_per_s = 0.1 + 0.8 * time_s;
+            let length_m = 1.0 + 0.1 * time_s + 0.4 * time_s * time_s;
+            let cables = [CableInput { sensor_force_n: 20.0 + time_s, length_m, speed_m_per_s }];
+            let elapsed_cycles = if cycle == 90 { elapsed_cycles } else { 1.0 };
+            let output = compensator.step(&CycleInput { cables, elapsed_cycles, ..CycleInput::default() });
+            // A lead of two cycles rests on seven in order.
+            let led_m_per_s = if !leads && (90..97).contains(&cycle) { 0.0 } else { 0.8 * 0.002 };
+            if cycle >= 20 {
+                assert_near(output.cables[0].friction_n, 3.0 * (speed_m_per_s + led_m_per_s), 1e-9);
+            }
+        }
+    }
 }

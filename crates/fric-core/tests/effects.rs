@@ -105,6 +105,68 @@ fn in_steady_sliding_each_effect_does_what_its_equation_says() {
     }
 }
 
+/// The table of an error without a name, by hand: twelve points over a range, straight lines between them, the end values beyond.
+#[test]
+fn a_table_over_each_condition_does_what_its_equation_says() {
+    const SHARES: [f64; 12] = [-0.2, 0.3, 0.9, 0.8, 0.2, -0.1, -0.5, -1.0, -0.7, -0.6, -0.2, 0.1];
+    const KEYS: [&str; 12] = [
+        "share_1", "share_2", "share_3", "share_4", "share_5", "share_6", "share_7", "share_8", "share_9", "share_10",
+        "share_11", "share_12",
+    ];
+    let share_at = |from: f64, to: f64, condition: f64| {
+        let place = ((condition - from) / (to - from) * 11.0).clamp(0.0, 11.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 11")]
+        let before = place.floor().min(10.0) as usize;
+        let beyond = place - place.floor().min(10.0);
+        SHARES[before] * (1.0 - beyond) + SHARES[before + 1] * beyond
+    };
+    for presliding in FORMS {
+        for (s, speed) in [(1.0, 0.1), (-1.0, -0.1)] {
+            let last_m = 1.0 + 0.1 * s;
+            for (keys, condition) in [
+                (["speed_from_m_per_s", "speed_to_m_per_s"], speed),
+                (["length_from_m", "length_to_m"], last_m),
+                (["load_from_n", "load_to_n"], 20.0),
+            ] {
+                for (below, above) in [(0.37, 0.5), (0.04, 1.3), (-0.2, 0.6), (0.6, -0.2)] {
+                    let (from, to) = (condition - below, condition + above);
+                    let share = share_at(from, to, condition);
+                    let mut table: Vec<(&str, &str, f64)> =
+                        KEYS.iter().zip(SHARES).map(|(key, share)| ("empirical", *key, share)).collect();
+                    table.extend([("empirical", keys[0], from), ("empirical", keys[1], to)]);
+                    let slid = |key, value| {
+                        let effects = [table.as_slice(), &[("empirical", key, value)]].concat();
+                        slide(&mut robot(&GUIDE, presliding, STIFF, &effects), 20.0, speed)
+                    };
+                    assert_near(slid("force_n", 0.4), behind_guide(20.0, s, 0.02, 0.0, 0.0) + 0.4 * share, 1e-6);
+                    let mu = 0.02 * (1.0 + 0.5 * share);
+                    assert_near(slid("friction_ratio", 0.5), behind_guide(20.0, s, mu, 0.0, 0.0), 1e-6);
+                }
+            }
+        }
+    }
+}
+
+/// A winch that has pushed through the play is half of it ahead of the cable, and the pulley turns with the cable.
+#[test]
+fn behind_a_play_a_ripple_follows_the_cable() {
+    for presliding in FORMS {
+        for (s, speed) in [(1.0, 0.1), (-1.0, -0.1)] {
+            let ripple = [
+                ("pulley_eccentricity", "sin_ratio", 0.03),
+                ("pulley_eccentricity", "cos_ratio", 0.01),
+                ("pulley_eccentricity", "period_m", 0.05),
+            ];
+            let play = [ripple.as_slice(), &[("gear_backlash", "play_m", 0.012)]].concat();
+            let cable_m = 1.0 + 0.1 * s - 0.006 * s;
+            let angle = std::f64::consts::TAU * cable_m / 0.05;
+            let factor = 1.0 + 0.03 * angle.sin() + 0.01 * angle.cos();
+            let slid_n = slide(&mut robot(&GUIDE, presliding, STIFF, &play), 20.0, speed);
+            assert_near(slid_n, behind_guide(20.0, s, 0.02, 0.0, 0.0) * factor, 1e-6);
+        }
+    }
+}
+
 /// Of two ripples of a kind, forces add and factors multiply.
 #[test]
 fn two_ripples_of_a_kind_each_do_what_their_equation_says() {

@@ -6,6 +6,8 @@
 #[cfg(test)]
 mod admittance;
 #[cfg(test)]
+mod any;
+#[cfg(test)]
 mod bits;
 #[cfg(test)]
 mod builds;
@@ -16,6 +18,8 @@ mod cycle;
 mod dahl;
 #[cfg(test)]
 mod delay;
+#[cfg(test)]
+mod doubt;
 #[cfg(test)]
 mod edit;
 #[cfg(test)]

@@ -60,6 +60,13 @@ fn a_state_of_a_robot_of_another_structure_is_refused_and_changes_nothing() {
         assert_eq!(compensator.restore(&other.snapshot()), Err(refused), "robot {index}");
         assert_eq!(compensator.state_words(), before);
     }
+    // Nothing but the attachment differs.
+    let fixed = cables().map(|cable| CableOptions { pulleys: &[SENSOR_180, GUIDE_90, GUIDE_90], ..cable });
+    let mut bare = fixed;
+    bare[2].geometry = None;
+    let refused = SnapshotMismatch { expected: CABLES, found: CABLES, cable: Some(2) };
+    assert_eq!(run(&fixed).restore(&run(&bare).snapshot()), Err(refused));
+    assert_eq!(run(&bare).restore(&run(&fixed).snapshot()), Err(refused));
     let text = SnapshotMismatch { expected: CABLES, found: CABLES, cable: Some(1) }.to_string();
     assert!(text.contains("pulleys, attachment, presliding or effects with memory of cable 2 differ"), "{text}");
 }

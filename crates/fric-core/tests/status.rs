@@ -410,6 +410,120 @@ fn an_attachment_inside_the_pulley_holds_wrap_and_direction() {
     }
 }
 
+/// A sensor that has repeated itself, or has been silent, may show at once what has changed meanwhile.
+#[test]
+fn a_change_over_several_cycles_is_a_jump_only_beyond_as_many_limits() {
+    let hold: Change = |signals| signals.sensor_force_n = 20.3;
+    let silent: Change = |signals| signals.sensor_force_n = f64::NAN;
+    for (meanwhile, cycles, limits) in [(hold, 4, 5.0), (silent, 4, 5.0), (silent, 1, 2.0)] {
+        for (change, jumps) in [(limits - 0.2, false), (limits + 0.2, true)] {
+            let monitor = MonitorOptions { sensor_jump_n: Some(2.0), ..MONITOR };
+            let options = CableOptions { friction: FRICTION, ..CableOptions::new(&PULLEYS) };
+            let mut bench = Bench { compensator: compensator(&[options], monitor), cycle: 0 };
+            bench.run(299);
+            bench.step(hold);
+            for _ in 0..cycles {
+                bench.step(meanwhile);
+            }
+            let output = bench.step(|signals| signals.sensor_force_n = 20.3 + 2.0 * change);
+            assert_eq!(output.status.contains(CableStatus::SENSOR_JUMP), jumps, "{cycles} cycles, {change}");
+        }
+    }
+}
+
+/// A jump ends when jumps have cancelled, or the force is back where it was; one that is partly taken back does not, for 5 s.
+#[test]
+fn a_jump_ends_when_it_is_taken_back() {
+    // What the sensor shows beyond the true force, and a change of the true force, each cycle; jumps are changes beyond 1 N.
+    let steady = |lie_n: f64| vec![(lie_n, 0.0); 30];
+    let wandering = |lie_n: f64, rate: f64| (0..30).map(|cycle| (lie_n + rate * f64::from(cycle), 0.0)).collect();
+    let changing = |lie_n: f64| vec![(lie_n, 0.8); 30];
+    let after = vec![(0.0, 0.0); 100];
+    for (phases, ends) in [
+        (vec![steady(60.0)], true),
+        // The lie itself creeps, and the force comes back to what it was.
+        (vec![wandering(60.0, 0.8)], true),
+        // The true force creeps meanwhile, and the jumps cancel.
+        (vec![changing(60.0)], true),
+        (vec![steady(60.0), steady(90.0)], true),
+        (vec![steady(60.0), steady(30.0)], false),
+        (vec![steady(-9.0), steady(-5.0)], false),
+    ] {
+        let phases: Vec<Vec<(f64, f64)>> = phases;
+        let monitor = MonitorOptions { sensor_jump_n: Some(1.0), ..MONITOR };
+        let options = CableOptions { friction: FRICTION, ..CableOptions::new(&PULLEYS) };
+        let mut bench = Bench { compensator: compensator(&[options], monitor), cycle: 0 };
+        bench.run(300);
+        let mut moved_n = 0.0;
+        for (lie_n, change_n) in phases.concat() {
+            moved_n += change_n;
+            let output = bench.step(|signals| signals.sensor_force_n += lie_n + moved_n);
+            assert!(output.status.contains(CableStatus::SENSOR_JUMP), "{phases:?}");
+        }
+        // In the cycle in which it is taken back it still stands.
+        let flagged: Vec<bool> = after
+            .iter()
+            .map(|_| bench.step(|signals| signals.sensor_force_n += moved_n).status.contains(CableStatus::SENSOR_JUMP))
+            .collect();
+        let expected: Vec<bool> = (0..after.len()).map(|cycle| cycle == 0 || !ends).collect();
+        assert_eq!(flagged, expected, "{phases:?}");
+    }
+}
+
+/// Two causes do not hide each other, whichever they are.
+#[test]
+fn faults_that_come_together_are_all_told() {
+    use CableStatus as Of;
+    let validated = ValidatedRange { force_n: [5.0, 30.0], speed_m_per_s: 1.0 };
+    let options = [CableOptions { validated, ..corner_cable(0, Presliding::PerPulley) }];
+    let monitor = MonitorOptions { sensor_jump_n: Some(2.0), ..MONITOR };
+    let geometry = options[0].geometry.unwrap();
+    let centre: [f64; 3] =
+        core::array::from_fn(|axis| geometry.base_m[axis] - geometry.platform_m[axis] + [0.01, 0.0, 0.0][axis]);
+    let inside = Pose::from_parts(centre, [0.0, 0.0, 0.0, 1.0]);
+    let silent: Change = |signals| signals.sensor_force_n = f64::NAN;
+    let spike: Change = |signals| signals.sensor_force_n += 60.0;
+    let small_spike: Change = |signals| signals.sensor_force_n += 8.0;
+    for (change, pose, flags) in [
+        (silent, None, Of::SENSOR_NOT_FINITE | Of::POSE_MISSING),
+        (silent, inside, Of::SENSOR_NOT_FINITE | Of::POSE_UNREACHABLE),
+        (spike, Some(somewhere(0.1)), Of::OUT_OF_RANGE | Of::SENSOR_JUMP | Of::UNSETTLED),
+        (small_spike, None, Of::POSE_MISSING | Of::SENSOR_JUMP | Of::UNSETTLED),
+        (small_spike, inside, Of::POSE_UNREACHABLE | Of::SENSOR_JUMP | Of::UNSETTLED),
+    ] {
+        let mut compensator = compensator::<1>(&options, monitor);
+        for cycle in 0..300 {
+            posed(&mut compensator, cycle, Some(somewhere(0.1)));
+        }
+        let mut cable = CableInput { sensor_force_n: 20.3, length_m: 0.03, speed_m_per_s: 0.1 };
+        change(&mut cable);
+        let output = compensator.step(&CycleInput { cables: [cable], pose, ..CycleInput::default() });
+        assert_eq!((output.cables[0].status, output.wrench_status), (flags, flags));
+    }
+}
+
+/// A cable that has never left its last pulley has no direction, so that there is no wrench.
+#[test]
+fn no_wrench_before_every_cable_has_left_its_pulley() {
+    let options = [corner_cable(0, Presliding::PerPulley), corner_cable(1, Presliding::PerPulley)];
+    let mut compensator = compensator::<2>(&options, MONITOR);
+    let geometry = options[0].geometry.unwrap();
+    let centre: [f64; 3] =
+        core::array::from_fn(|axis| geometry.base_m[axis] - geometry.platform_m[axis] + [0.01, 0.0, 0.0][axis]);
+    let inside = Pose::from_parts(centre, [0.0, 0.0, 0.0, 1.0]).unwrap();
+    let mut step = |pose| {
+        let cables = [CableInput { sensor_force_n: 20.0, length_m: 1.0, speed_m_per_s: 0.0 }; 2];
+        compensator.step(&CycleInput { cables, pose: Some(pose), ..CycleInput::default() })
+    };
+    for _ in 0..3 {
+        let output = step(inside);
+        assert_eq!(output.cables.map(|cable| cable.status), [CableStatus::POSE_UNREACHABLE, CableStatus::OK]);
+        assert_eq!((output.outside_wrench, output.applied_wrench), (None, None));
+    }
+    assert!(step(somewhere(0.1)).outside_wrench.is_some());
+    assert!(step(inside).outside_wrench.is_some());
+}
+
 #[test]
 fn flags_have_names() {
     assert_eq!(CableStatus::OK.to_string(), "ok");

@@ -1,12 +1,15 @@
 //! A change of parameters against two compensators that know nothing of it.
 
 use fric_core::effects::{Effect, EffectParams};
-use fric_core::robot::{CableOptions, FrictionOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions};
+use fric_core::robot::{
+    CableOptions, FrictionOptions, GeometryOptions, MonitorOptions, PlatformOptions, Presliding, PulleyOptions,
+};
 use fric_core::{AnyCompensator, CableParams, CableStatus, RobotParams, SendError};
 use fric_core::{
     CableInput, CableOutput, Compensator, CycleInput, CycleOutput, Pose, TunableCompensator, Wrench, parameter_exchange,
 };
 
+use crate::oracle::Geometry;
 use crate::support::{FRICTION, compensator, corner_cable, smooth_input};
 
 const CABLES: usize = 5;
@@ -459,6 +462,60 @@ fn the_form_of_presliding_changes_without_a_jump() {
             assert!(gap_n(&output, &before) < 1e-12, "{} N", gap_n(&output, &before));
         }
     }
+}
+
+/// What a cable stores as a whole goes to its pulleys in proportion to 2 sin(α/2) of their wraps, with the same force at the platform: behind the sensor
+/// pulley friction adds up, and at a wrap of 180° the sensor itself shows half of its own.
+#[test]
+fn friction_of_the_whole_cable_goes_to_the_pulleys_by_their_wraps() {
+    let [lumped, per_pulley] = [Presliding::Lumped, Presliding::PerPulley].map(|form| robot_with(form, &[]));
+    let mut tunable = TunableCompensator::new(lumped);
+    let mut output = CycleOutput::default();
+    for cycle in 0..300 {
+        tunable.step_into(&quick_input(cycle), &mut output);
+    }
+    let mut resting = quick_input(299);
+    resting.cables.iter_mut().for_each(|cable| cable.speed_m_per_s = 0.0);
+    tunable.step_into(&resting, &mut output);
+    tunable.change(&per_pulley, 1).unwrap();
+    tunable.step_into(&resting, &mut output);
+    let pose = resting.pose.unwrap();
+    for (index, cable) in output.cables.iter().enumerate() {
+        let options = corner_cable(index, Presliding::PerPulley);
+        let GeometryOptions { base_m, platform_m } = options.geometry.unwrap();
+        let attachment_m: [f64; 3] = (pose.position_m + pose.orientation * nalgebra::Vector3::from(platform_m)).into();
+        let geometry = Geometry { base_m, platform_m, axis: [0.0, 0.0, 1.0], radius_m: 0.01 };
+        let wraps_rad = [std::f64::consts::PI, std::f64::consts::FRAC_PI_2, geometry.exit(attachment_m).wrap_rad];
+        let factors = wraps_rad.map(|wrap_rad| 2.0 * (0.5 * wrap_rad).sin());
+        let shares: f64 = 0.5 * factors[0] + factors[1] + factors[2];
+        let stored_n = tunable.compensator().pulley_friction_n(index);
+        for (stored_n, factor) in stored_n.iter().zip(factors) {
+            let by_hand_n = cable.friction_n / shares * factor;
+            assert!(stored_n.abs() > 1e-3, "cable {index}: {stored_n}");
+            assert!((stored_n - by_hand_n).abs() < 1e-12, "cable {index}: {stored_n} and {by_hand_n}");
+        }
+    }
+}
+
+#[test]
+fn a_state_that_is_restored_ends_a_change() {
+    let mut tunable = TunableCompensator::new(old());
+    let mut output = CycleOutput::default();
+    for cycle in 0..200 {
+        tunable.step_into(&input(cycle), &mut output);
+    }
+    let new = new();
+    tunable.change(&new, BLEND_CYCLES).unwrap();
+    tunable.step_into(&input(200), &mut output);
+    assert!(tunable.is_changing());
+    let mut expected = new.clone();
+    for cycle in 0..50 {
+        expected.step(&input(cycle));
+    }
+    tunable.restore(&expected.snapshot());
+    assert!(!tunable.is_changing());
+    tunable.step_into(&input(50), &mut output);
+    assert_eq!(output, expected.step(&input(50)));
 }
 
 /// Where the motion is in its period does not depend on the delays that there were before.
