@@ -24,8 +24,8 @@ impl StepResult {
     }
 }
 
-/// Length of a reason that fits into its line and so is as well read again.
-const SHORT: usize = 48;
+/// Length of reasons that take two lines at most, and so are as well read again.
+const SHORT: usize = 90;
 
 /// Formats steps as a table. Reasons that a step above has as well are not repeated, unless they are short.
 pub fn step_table(title: &str, steps: &[StepResult]) -> String {

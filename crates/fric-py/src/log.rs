@@ -370,6 +370,14 @@ impl Log {
         Ok(Some(Self { origin: Arc::clone(&self.origin), ..stated }))
     }
 
+    /// Returns a warning if the log was read by another table `[log]` than a robot's.
+    fn read_otherwise(&self, py: Python<'_>, robot: &Robot) -> Vec<String> {
+        let is_other = |own: &Py<Robot>| own.borrow(py).file.options().log != robot.file.options().log;
+        let warning = "the log was read by another `[log]` than that of this robot, and its signals stay as they were read; read it again with \
+                       `robot` for its own";
+        self.robot.as_ref().filter(|own| is_other(own)).map(|_| warning.to_owned()).into_iter().collect()
+    }
+
     /// Checks that the columns are a robot's cables, and that there are rows.
     fn check_usable(&self, py: Python<'_>, names: &[&str]) -> Outcome {
         if self.cable_names == names {
@@ -422,6 +430,7 @@ pub fn of<'py>(
     };
     let robot = robot.borrow();
     log.get().check_usable(py, &robot.file.cable_names())?;
+    warn(py, &log.get().read_otherwise(py, &robot))?;
     log.get().with_stated(py, &robot, unread, watch)?.map_or(Ok(log), |log| Ok(Bound::new(py, log)?))
 }
 
