@@ -1,11 +1,11 @@
 //! Computes the external wrench if it was not measured: weight and inertia of the platform, from its mass and pose alone.
 //!
 //! Newton and Euler: force `F = m·(g − a)`, and torque `R c × F − (I·α + ω × I·ω)` about the platform's origin, with the acceleration a of the centre
-//! of mass c, the angular velocity ω and the inertia tensor I. A second difference over ± [`WINDOW_S`] is the mean of an acceleration under a
+//! of mass c, the angular velocity ω and the inertia tensor I. A second difference over ± [`WINDOW_NANOS`] is the mean of an acceleration under a
 //! triangular window of that width, which differs from it by `h²/12` times its second derivative. Differences of these means cancel that part:
 //! together they are the central difference of fourth order, `(−1, 16, −30, 16, −1)/12`; for a rotation about changing axes it is nearly that. The angular
 //! velocity is the plain mean over the window. Samples with accelerations or turns that are not small are left out: the tensor may not be known, and after a
-//! jump of the acceleration the means are wrong.
+//! jump of the acceleration the means are wrong. Times are those of the stamps, so that neither lost poses nor the file's `cycle_s` matter.
 
 use std::collections::VecDeque;
 
@@ -13,12 +13,22 @@ use fric_core::robot::RobotParams;
 use fric_core::{Pose, Wrench};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-/// Half the width of the window, s.
-const WINDOW_S: f64 = 0.02;
+/// Half the width of the window, and the minimum distance of poses for a difference.
+const WINDOW_NANOS: u64 = 20_000_000;
+/// Stamps that are rounded may be nearer by this.
+const ROUNDING_NANOS: u64 = 10_000;
+/// Poses further apart than this say nothing about the acceleration between them, s,
+const FARTHEST_S: f64 = 0.2;
+/// nor two intervals whose ratio is beyond this: the mean of a jerk under them is no acceleration at the pose between.
+const MOST_UNEVEN: f64 = 1.5;
 /// Limits of quasi-static motion: acceleration of the centre of mass, m/s²,
 const GREATEST_ACCELERATION_M_PER_S2: f64 = 0.5;
 /// and angular acceleration and squared angular velocity, rad/s².
 const GREATEST_ROTATION_RAD_PER_S2: f64 = 2.0;
+
+/// Why no pose has a motion, as a clause.
+pub const NEVER_QUIET: &str = "the platform is never in quiet motion by its poses, with accelerations to 0.5 m/s² and 2 rad/s² for 80 ms; noise of the poses \
+                               beyond some 0.03 mm looks like more";
 
 /// What gravity and inertia act on.
 #[derive(Clone, Copy, Debug)]
@@ -63,81 +73,118 @@ impl Body {
     }
 }
 
-/// The wrench computed from the mass, pose by pose, with a latency of [`delay`](Self::delay) poses.
-#[derive(Clone, Debug)]
-pub struct Weight {
-    body: Body,
-    /// Number of samples in half the window.
-    window: usize,
-    window_s: f64,
-    /// The last poses, the newest at the back: one window.
-    poses: VecDeque<Option<Pose>>,
-    /// The last motions, the newest at the back: one window; `None` if unknown or not quiet.
-    motions: VecDeque<Option<Motion>>,
+/// A pose of which the motion is to be known.
+#[derive(Clone, Copy, Debug)]
+struct Posed {
+    stamp_nanos: i64,
+    pose: Option<Pose>,
+    /// Mean motion over the window, once that has passed; `None` if it is unknown or not quiet.
+    mean: Option<Motion>,
 }
 
-impl Weight {
+/// The motion of the platform, pose by pose, as soon as two windows after a pose have passed.
+#[derive(Clone, Debug)]
+pub struct Motions {
+    center_of_mass_m: Vector3<f64>,
+    /// Poses that others still need, then those whose motion is not known yet, in the order of time.
+    poses: VecDeque<Posed>,
+    /// Number of poses whose mean motion has been computed, and number of those that are delivered.
+    mean_count: usize,
+    delivered: usize,
+}
+
+impl Motions {
     /// Creates the computation for a robot's platform, before the first pose.
     pub fn new(robot: &RobotParams<'_>) -> Self {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few samples")]
-        let window = (WINDOW_S / robot.cycle_s()).ceil().max(1.0) as usize;
-        #[expect(clippy::cast_precision_loss, reason = "a few samples")]
-        let window_s = window as f64 * robot.cycle_s();
-        Self {
-            body: Body::of(robot),
-            window,
-            window_s,
-            poses: vec![None; 2 * window + 1].into(),
-            motions: vec![None; 2 * window + 1].into(),
+        Self { center_of_mass_m: robot.center_of_mass_m(), poses: VecDeque::new(), mean_count: 0, delivered: 0 }
+    }
+
+    /// Adds the next pose. Calls `show` with the motion of each pose for which it is final, in their order; `None` if it is unknown.
+    pub fn push(&mut self, stamp_nanos: i64, pose: Option<Pose>, mut show: impl FnMut(Option<Motion>)) {
+        if self.poses.back().is_some_and(|last| last.stamp_nanos >= stamp_nanos) {
+            self.end(&mut show);
+        }
+        self.poses.push_back(Posed { stamp_nanos, pose, mean: None });
+        while let Some(after) = self.after(self.mean_count) {
+            let mean = self.quiet_motion(self.mean_count, after);
+            if let Some(posed) = self.poses.get_mut(self.mean_count) {
+                posed.mean = mean;
+            }
+            self.mean_count += 1;
+        }
+        while let Some(after) = self.after(self.delivered).filter(|after| *after < self.mean_count) {
+            show(self.motion(self.delivered, after));
+            self.delivered += 1;
+            // The one before the window is the first that the next pose needs.
+            while self.before(self.delivered).is_some_and(|before| before > 0) {
+                self.poses.pop_front();
+                self.mean_count -= 1;
+                self.delivered -= 1;
+            }
         }
     }
 
-    /// Returns the latency in poses.
-    pub fn delay(&self) -> usize {
-        2 * self.window
+    /// Ends a log: the motion of the last poses is not known.
+    pub fn end(&mut self, mut show: impl FnMut(Option<Motion>)) {
+        (self.delivered..self.poses.len()).for_each(|_| show(None));
+        self.poses.clear();
+        (self.mean_count, self.delivered) = (0, 0);
     }
 
-    /// Adds the next pose and returns the wrench of the one `delay` poses before; `None` if it is unknown.
-    pub fn push(&mut self, pose: Option<Pose>) -> Option<Wrench> {
-        let (pose, motion) = self.moved(pose)?;
-        Some(self.body.wrench(&pose.orientation, &motion))
+    /// Returns the last pose at least half a window before another; `None` if there is none, or none near.
+    fn before(&self, index: usize) -> Option<usize> {
+        let now = self.poses.get(index)?.stamp_nanos;
+        (0..index).rev().find(|before| self.is_apart(*before, now))
     }
 
-    /// Adds the next pose and returns the one `delay` poses before with its motion; `None` if that is unknown.
-    fn moved(&mut self, pose: Option<Pose>) -> Option<(Pose, Motion)> {
-        self.poses.pop_front();
-        self.poses.push_back(pose);
-        let motion = self.quiet_motion();
-        self.motions.pop_front();
-        self.motions.push_back(motion);
-        // All accelerations must be small, because the mean over the window may vanish by chance.
-        if self.motions.iter().any(Option::is_none) {
+    /// Returns the first pose at least half a window after another; `None` before it has come.
+    fn after(&self, index: usize) -> Option<usize> {
+        let now = self.poses.get(index)?.stamp_nanos;
+        (index + 1..self.poses.len()).find(|after| self.is_apart(*after, now))
+    }
+
+    fn is_apart(&self, index: usize, now_nanos: i64) -> bool {
+        self.poses
+            .get(index)
+            .is_some_and(|other| now_nanos.abs_diff(other.stamp_nanos) >= WINDOW_NANOS - ROUNDING_NANOS)
+    }
+
+    /// Returns the motion of a pose; `None` if it is unknown. All mean accelerations within the window must be small, because the mean over it may vanish by
+    /// chance.
+    fn motion(&self, index: usize, after: usize) -> Option<Motion> {
+        let before = self.before(index)?;
+        let mean = |index: usize| self.poses.get(index)?.mean;
+        if (before..=after).any(|index| mean(index).is_none()) {
             return None;
         }
-        let motion = |place: usize| self.motions.get(place).copied().flatten();
-        let (before, now, after) = (motion(0)?, motion(self.window)?, motion(2 * self.window)?);
-        let exact = |of: fn(&Motion) -> Vector3<f64>| of(&now) - (of(&before) - of(&now) * 2.0 + of(&after)) / 12.0;
-        let motion = Motion {
+        let (past, now, future) = (mean(before)?, mean(index)?, mean(after)?);
+        let exact = |of: fn(&Motion) -> Vector3<f64>| of(&now) - (of(&past) - of(&now) * 2.0 + of(&future)) / 12.0;
+        Some(Motion {
             acceleration_m_per_s2: exact(|motion| motion.acceleration_m_per_s2),
             angular_acceleration_rad_per_s2: exact(|motion| motion.angular_acceleration_rad_per_s2),
             ..now
-        };
-        // The motion in the middle belongs to the pose at the front.
-        Some(((*self.poses.front()?)?, motion))
+        })
     }
 
-    /// Returns the mean motion about the pose in the middle; `None` if it is not quiet.
-    fn quiet_motion(&self) -> Option<Motion> {
-        let pose = |place: usize| self.poses.get(place).copied().flatten();
-        let (before, now, after) = (pose(0)?, pose(self.window)?, pose(2 * self.window)?);
-        let squared = self.window_s * self.window_s;
-        let center_m = |pose: &Pose| pose.position_m + pose.orientation * self.body.center_of_mass_m;
+    /// Returns the mean motion about a pose; `None` if it is unknown or not quiet.
+    fn quiet_motion(&self, index: usize, after: usize) -> Option<Motion> {
+        let posed = |index: usize| self.poses.get(index).and_then(|of| Some((of.stamp_nanos, of.pose?)));
+        let (before, now, after) = (posed(self.before(index)?)?, posed(index)?, posed(after)?);
+        #[expect(clippy::cast_precision_loss, reason = "intervals between poses")]
+        let [past_s, future_s] = [now.0 - before.0, after.0 - now.0].map(|nanos| nanos as f64 * 1e-9);
+        if past_s.max(future_s) > FARTHEST_S || past_s.max(future_s) > MOST_UNEVEN * past_s.min(future_s) {
+            return None;
+        }
+        let middle_s = 0.5 * (past_s + future_s);
+        let center_m = |pose: &Pose| pose.position_m + pose.orientation * self.center_of_mass_m;
         let turn_rad = |from: &Pose, to: &Pose| (to.orientation * from.orientation.inverse()).scaled_axis();
-        let (to_rad, on_rad) = (turn_rad(&before, &now), turn_rad(&now, &after));
+        let (to_rad, on_rad) = (turn_rad(&before.1, &now.1) / past_s, turn_rad(&now.1, &after.1) / future_s);
+        let (to_m, on_m) =
+            ((center_m(&now.1) - center_m(&before.1)) / past_s, (center_m(&after.1) - center_m(&now.1)) / future_s);
         let motion = Motion {
-            acceleration_m_per_s2: (center_m(&before) - center_m(&now) * 2.0 + center_m(&after)) / squared,
-            angular_velocity_rad_per_s: (to_rad + on_rad) / (2.0 * self.window_s),
-            angular_acceleration_rad_per_s2: (on_rad - to_rad) / squared,
+            acceleration_m_per_s2: (on_m - to_m) / middle_s,
+            angular_velocity_rad_per_s: (to_rad * future_s + on_rad * past_s) / (past_s + future_s),
+            angular_acceleration_rad_per_s2: (on_rad - to_rad) / middle_s,
         };
         let is_quiet = motion.acceleration_m_per_s2.norm() <= GREATEST_ACCELERATION_M_PER_S2
             && motion.angular_acceleration_rad_per_s2.norm() <= GREATEST_ROTATION_RAD_PER_S2
@@ -146,12 +193,14 @@ impl Weight {
     }
 }
 
-/// Returns the motion at each pose of one log; `None` if it is unknown.
-pub fn motions(robot: &RobotParams<'_>, poses: &[Option<Pose>]) -> Vec<Option<Motion>> {
-    let mut weight = Weight::new(robot);
-    let delay = weight.delay();
-    let all = poses.iter().copied().chain(std::iter::repeat_n(None, delay));
-    all.map(|pose| weight.moved(pose).map(|(_, motion)| motion)).skip(delay).collect()
+/// Returns the motion at each pose of one log, with its stamps; `None` if it is unknown.
+pub fn motions(robot: &RobotParams<'_>, poses: impl Iterator<Item = (i64, Option<Pose>)>) -> Vec<Option<Motion>> {
+    let (mut motions, mut all) = (Motions::new(robot), Vec::new());
+    for (stamp_nanos, pose) in poses {
+        motions.push(stamp_nanos, pose, |motion| all.push(motion));
+    }
+    motions.end(|motion| all.push(motion));
+    all
 }
 
 #[cfg(test)]
@@ -167,11 +216,12 @@ mod tests {
         RobotFile::parse(text, "test").unwrap()
     }
 
-    fn wrenches(robot: &RobotFile, poses: &[Option<Pose>]) -> Vec<Option<Wrench>> {
+    fn wrenches(robot: &RobotFile, cycle_nanos: i64, poses: &[Option<Pose>]) -> Vec<Option<Wrench>> {
         let body = Body::of(&robot.params());
         let wrench =
             |(pose, motion): (&Option<Pose>, Option<Motion>)| Some(body.wrench(&pose.as_ref()?.orientation, &motion?));
-        poses.iter().zip(motions(&robot.params(), poses)).map(wrench).collect()
+        let stamped = (0..).map(|cycle| cycle * cycle_nanos).zip(poses.iter().copied());
+        poses.iter().zip(motions(&robot.params(), stamped)).map(wrench).collect()
     }
 
     #[test]
@@ -185,7 +235,7 @@ mod tests {
             Some(Pose { position_m: center_m - orientation * Vector3::new(0.1, 0.0, 0.0), orientation })
         };
         let poses: Vec<Option<Pose>> = (0..100).map(pose).collect();
-        let found = wrenches(&robot, &poses);
+        let found = wrenches(&robot, 4_000_000, &poses);
         assert_eq!(found.len(), 100);
         // A window of 5 cycles, twice at either end.
         assert!((0..100).all(|cycle| found[cycle].is_some() == (10..90).contains(&cycle)));
@@ -211,7 +261,7 @@ mod tests {
                 let orientation = UnitQuaternion::from_scaled_axis(axis * angle_rad(f64::from(cycle) * 0.001));
                 Some(Pose { position_m: Vector3::zeros(), orientation })
             };
-            let found = wrenches(&robot, &(0..1000).map(pose).collect::<Vec<_>>());
+            let found = wrenches(&robot, 1_000_000, &(0..1000).map(pose).collect::<Vec<_>>());
             found[500].unwrap().torque_nm
         };
         // At 0.5 s the axes agree, and the body is about to turn by ½·1.5·t² about z: −I·α with I·z = (0.25, 0, 3).
@@ -232,11 +282,37 @@ mod tests {
             let x_m = -0.4 / rate.powi(2) * (rate * f64::from(cycle) * 0.004).sin();
             Some(Pose { position_m: Vector3::new(x_m, 0.0, 0.0), orientation: UnitQuaternion::identity() })
         };
-        let found = wrenches(&robot, &(0..200).map(pose).collect::<Vec<_>>());
+        let found = wrenches(&robot, 4_000_000, &(0..200).map(pose).collect::<Vec<_>>());
         for cycle in 10_u32..190 {
             let exact_n = -2.0 * 0.4 * (rate * f64::from(cycle) * 0.004).sin();
             let error_n = found[cycle as usize].unwrap().force_n.x - exact_n;
             assert!(error_n.abs() < 3e-4, "{error_n} N in cycle {cycle}");
+        }
+    }
+
+    /// A pose that is lost changes the times of its neighbours, not the acceleration; and the file's `cycle_s` is not the rate of the log.
+    #[test]
+    fn lost_poses_and_another_rate_make_no_acceleration() {
+        let robot = robot();
+        for (cycle_nanos, lost) in
+            [(4_000_000, 7), (4_000_000, 1000), (1_000_000, 13), (10_000_000, 1000), (31_000_000, 1000)]
+        {
+            let cycles = (0..3_000_000_000 / cycle_nanos).filter(|cycle| cycle % lost != lost - 1);
+            let stamped = cycles.map(|cycle| {
+                let stamp_nanos = cycle * cycle_nanos;
+                #[expect(clippy::cast_precision_loss, reason = "a time")]
+                let time_s = stamp_nanos as f64 * 1e-9;
+                let position_m = Vector3::new(0.3 * time_s, 0.1 * time_s * time_s, 0.0);
+                (stamp_nanos, Some(Pose { position_m, orientation: UnitQuaternion::identity() }))
+            });
+            let found = motions(&robot.params(), stamped.clone());
+            assert_eq!(found.len(), stamped.count());
+            let known: Vec<Motion> = found.into_iter().flatten().collect();
+            assert!(known.len() > 40, "{cycle_nanos}, {lost}: {}", known.len());
+            for motion in known {
+                let error = motion.acceleration_m_per_s2 - Vector3::new(0.0, 0.2, 0.0);
+                assert!(error.norm() < 1e-6, "{cycle_nanos}, {lost}: {error}");
+            }
         }
     }
 
@@ -250,7 +326,7 @@ mod tests {
                 Some(Pose { position_m, orientation: UnitQuaternion::identity() })
             })
             .collect();
-        let found = wrenches(&robot, &poses);
+        let found = wrenches(&robot, 4_000_000, &poses);
         // 0.6 m/s² from cycle 50 on.
         assert!(found[10..40].iter().all(Option::is_some) && found[55..].iter().all(Option::is_none));
     }

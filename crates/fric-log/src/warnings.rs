@@ -61,10 +61,15 @@ impl SignalReader {
             warnings.extend(self.times_apart(role).map(|apart| format!("{} signal `{path}`: {apart}", role.key())));
         }
         let cables = self.counts(Role::Cable);
-        if self.log().column_names().is_some() && cables.late_count + cables.clock_step_count > 0 {
+        if self.log().column_names().is_some() && cables.late_count > 0 {
             warnings
                 .push("the rows are not in the order of their times: sort them, unless the clock was set back; if the files are separate \
                  recordings, name each in a command of its own".into());
+        } else if self.log().column_names().is_some() && cables.clock_step_count > 0 {
+            warnings.push(
+                "the times start again from an earlier one, and what follows is read as a continuation: do not sort the rows, for those of both parts would \
+                 be mixed; put separate recordings into files and commands of their own".into(),
+            );
         }
         warnings.extend(self.length_poses().iter().flat_map(LengthPoses::warnings));
         warnings

@@ -14,10 +14,12 @@ use super::summary;
 use crate::discover::RecordingFault;
 use crate::discover::result::FaultResult;
 use crate::errors::{ForceError, WrenchError, WrenchResult};
+use crate::replay::WrenchReference;
 use crate::search::optimizer::Termination;
 use crate::search::vector::Parameter;
 use crate::set_up;
 use crate::text::listed;
+use crate::weight::NEVER_QUIET;
 
 /// The fits, by the kind of reference.
 #[derive(Clone, Debug)]
@@ -240,7 +242,7 @@ impl FitResult {
     /// Returns a [`FitError`] with the likely cause if not.
     pub fn check_fitted(&self) -> Result<(), FitError> {
         if let Some(first) = self.cables.first().filter(|_| self.cables.iter().all(|cable| cable.samples == 0)) {
-            let (cause, advice) = why_unused(&first.left_out);
+            let (cause, advice) = why_unused(&first.left_out, self.reference);
             return Err(FitError::new(format!("no sample can be used: {cause}"), advice));
         }
         let of_logs = |cable: &FitCableResult| cable.per_log.iter().any(|log| !log.standard_errors.0.is_empty());
@@ -278,7 +280,7 @@ impl FitResult {
         let is_told = self.cables.iter().all(|cable| cable.samples == 0);
         let told = |place: &usize| is_told || readiness.is_lacking(*place);
         for (_, cable) in self.cables.iter().enumerate().filter(|(place, cable)| cable.samples == 0 && !told(place)) {
-            let (cause, _) = why_unused(&cable.left_out);
+            let (cause, _) = why_unused(&cable.left_out, self.reference);
             match unused.iter_mut().find(|(of, _)| *of == cause) {
                 Some((_, names)) => names.push(&cable.name),
                 None => unused.push((cause, vec![&cable.name])),
@@ -305,14 +307,18 @@ impl FitResult {
     }
 }
 
-/// Returns why there is no training sample, and what to do.
-fn why_unused(left_out: &LeftOut) -> (&'static str, &'static str) {
+/// Returns why there is no training sample, and what to do, with a reference by its name.
+fn why_unused(left_out: &LeftOut, reference: &str) -> (&'static str, &'static str) {
     let LeftOut { flagged, without_reference, warm_up, outliers: _ } = *left_out;
     if warm_up >= flagged.max(without_reference) {
         let cause = "the cables move too little to forget the friction stored in them when the log began";
         (cause, "Record longer strokes, best the run of `fric-cli excite`.")
     } else if flagged >= without_reference {
         ("each is flagged, or has no tension on the cable", "See the flags with `fric-cli replay`.")
+    } else if reference == WrenchReference::Mass.name() {
+        (NEVER_QUIET, "Record slower motion, or poses with less noise, or the wrench on the platform.")
+    } else if reference == WrenchReference::Measured.name() {
+        ("the wrench is missing wherever all cables have their signals", "See the signals with `fric-cli info`.")
     } else {
         (
             "the reference is missing, or stands still, wherever the other signals are there",

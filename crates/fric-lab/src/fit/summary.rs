@@ -189,10 +189,10 @@ fn legend(result: &FitResult) -> String {
     let is_kept = |cable: &FitCableResult| {
         let friction =
             || cable.parameters.0.iter().filter(|(name, _)| Parameter::named(name).is_some_and(|p| p.is_friction()));
-        friction().any(|(name, _)| cable.standard_errors.get(name).is_none())
+        friction().any(|(name, _)| cable.standard_errors.get(name).is_none() && !cable.at_bound.contains(name))
     };
     if result.cables.iter().any(is_kept) {
-        let mean = if result.cables.len() > 1 { ", and left out of the mean" } else { "" };
+        let mean = if result.cables.len() > 1 { ", and left out of the mean, as are values at a bound" } else { "" };
         let _ = writeln!(text, "\n(…) is not identified but kept from the robot file{mean}.");
     }
     text

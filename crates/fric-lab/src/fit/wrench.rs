@@ -442,9 +442,14 @@ fn outside_wrenches(
 /// Returns the motion of the platform in each sample.
 fn motions(measurements: &Measurements<'_>) -> Vec<Option<Motion>> {
     let poses = &measurements.platform().poses;
-    let ends = measurements.starts().iter().skip(1).copied().chain([poses.len()]);
-    let logs = measurements.starts().iter().zip(ends).filter_map(|(start, end)| poses.get(*start..end));
-    logs.flat_map(|poses| weight::motions(measurements.robot(), poses)).collect()
+    let Some(record) = measurements.cables().next() else { return vec![None; poses.len()] };
+    let of_log = |(start, count): (usize, usize)| {
+        #[expect(clippy::cast_possible_truncation, reason = "a time of a log")]
+        let stamp_nanos = |place: usize| (record.time_s(place) * 1e9).round() as i64;
+        let stamped = (start..start + count).map(|place| (stamp_nanos(place), poses.get(place).copied().flatten()));
+        weight::motions(measurements.robot(), stamped)
+    };
+    record.logs().map(|(start, rows)| (start, rows.len())).flat_map(of_log).collect()
 }
 
 /// Returns the standing of each sample for all cables together: that of the first cable for which it cannot be used.

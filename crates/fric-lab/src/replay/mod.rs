@@ -16,7 +16,7 @@ use fric_core::{AnyCompensator, CableOutput, CableParams, CableStatus, ParamErro
 use crate::clock::Clock;
 use crate::fit::readiness::Tension;
 use crate::set_up::{Motions, SetUp};
-use crate::weight::Weight;
+use crate::weight::{self, Body};
 
 pub use error::Deviation;
 
@@ -118,9 +118,12 @@ pub struct Replay {
 /// The comparison with the wrench of the platform's mass.
 #[derive(Debug)]
 struct ByMass {
-    weight: Weight,
-    /// Wrenches by frictionless and by compensated forces, of the cycles whose reference is still pending.
-    waiting: VecDeque<Option<(Wrench, Wrench)>>,
+    body: Body,
+    motions: weight::Motions,
+    /// Pose, and wrenches by frictionless and by compensated forces, of the cycles whose motion is still pending.
+    waiting: VecDeque<Option<(Pose, Wrench, Wrench)>>,
+    /// Whether any cycle had a pose and wrenches.
+    has_wrench: bool,
     before: WrenchErrors,
     after: WrenchErrors,
 }
@@ -128,20 +131,29 @@ struct ByMass {
 impl ByMass {
     fn new(robot: &RobotParams<'_>) -> Option<Self> {
         let has_weight = robot.mass_kg() > 0.0 && robot.cables().iter().all(fric_core::CableParams::has_geometry);
-        has_weight.then(|| {
-            let weight = Weight::new(robot);
-            let waiting = vec![None; weight.delay()].into();
-            Self { weight, waiting, before: WrenchErrors::default(), after: WrenchErrors::default() }
+        has_weight.then(|| Self {
+            body: Body::of(robot),
+            motions: weight::Motions::new(robot),
+            waiting: VecDeque::new(),
+            has_wrench: false,
+            before: WrenchErrors::default(),
+            after: WrenchErrors::default(),
         })
     }
 
-    fn add(&mut self, pose: Option<Pose>, wrenches: Option<(Wrench, Wrench)>) {
-        self.waiting.push_back(wrenches);
-        let compared = self.waiting.pop_front().flatten();
-        if let (Some(reference), Some((before, after))) = (self.weight.push(pose), compared) {
-            self.before.add(&(before - reference));
-            self.after.add(&(after - reference));
-        }
+    fn add(&mut self, stamp_nanos: i64, pose: Option<Pose>, wrenches: Option<(Wrench, Wrench)>) {
+        let Self { body, motions, waiting, has_wrench, before, after } = self;
+        let here = pose.zip(wrenches).map(|(pose, (before, after))| (pose, before, after));
+        *has_wrench |= here.is_some();
+        waiting.push_back(here);
+        motions.push(stamp_nanos, pose, |motion| {
+            let compared = waiting.pop_front().flatten().zip(motion);
+            if let Some(((pose, frictionless, compensated), motion)) = compared {
+                let reference = body.wrench(&pose.orientation, &motion);
+                before.add(&(frictionless - reference));
+                after.add(&(compensated - reference));
+            }
+        });
     }
 }
 
@@ -201,7 +213,7 @@ impl Replay {
             self.wrench_after.add(&(after - *reference));
         }
         if let Some(by_mass) = &mut self.by_mass {
-            by_mass.add(sample.pose.filter(Pose::is_usable), wrenches);
+            by_mass.add(sample.stamp_nanos, sample.pose.filter(Pose::is_usable), wrenches);
         }
         let outputs = self.compensator.outputs();
         let cables = self.cables.iter_mut().zip(sample.cables).zip(outputs).zip(sample.reference_force_n);

@@ -6,6 +6,7 @@ use fric_core::robot::file::{CableTable, RobotFile};
 use super::Replay;
 use crate::fit::readiness::{NEGATIVE_ADVICE, NEGATIVE_FORCE, without_reference};
 use crate::set_up;
+use crate::weight::NEVER_QUIET;
 
 /// Poses come at 10 Hz or faster, so a log ends no later than this after the last one.
 const POSE_INTERVAL_S: f64 = 0.1;
@@ -33,6 +34,9 @@ impl Replay {
                 Some(advice) => format!("{cause}; the columns of errors stay empty. {}", advice.trim_end_matches('.')),
             });
         }
+        if self.by_mass.as_ref().is_some_and(|by_mass| by_mass.has_wrench && by_mass.before.rms().is_none()) {
+            warnings.push(format!("the wrench is not compared with the platform's weight: {NEVER_QUIET}"));
+        }
         warnings.extend(self.cable_warnings(robot));
         warnings.extend(self.motions.warnings(&robot.cable_names()));
         let set_ups = self.cables().iter().map(|cable| cable.set_up);
@@ -49,7 +53,9 @@ impl Replay {
         let names: Vec<&str> = tables.filter(frictionless).map(|cable| cable.name.as_str()).collect();
         if !names.is_empty() {
             let names = names.join(", ");
-            warnings.push(format!("the robot file gives no `friction` for {names}: nothing is compensated there"));
+            warnings.push(format!(
+                "the robot file has no friction for {names}: what acts there are effects and offset alone"
+            ));
         }
         // Poses are not extrapolated past the last one, which is no problem.
         let end_count = |count: u64| if count <= self.cycles_between_poses() { count } else { 0 };
@@ -76,7 +82,7 @@ impl Replay {
             self.motions.still().into_iter().filter_map(|cable| robot.cable_names().get(cable).copied()).collect();
         if !still.is_empty() {
             warnings.push(format!(
-                "the length of {} never changes; friction is that of motion, so that nothing is compensated there",
+                "the length of {} never changes; friction is that of motion, so that none is compensated there",
                 still.join(", ")
             ));
         }

@@ -423,11 +423,6 @@ impl<'a> Measurements<'a> {
     pub(crate) fn structure(&self) -> &[Vector6<f64>] {
         &self.platform.structure
     }
-
-    /// Returns the index of the first sample of each log.
-    pub(crate) fn starts(&self) -> &[usize] {
-        &self.starts
-    }
 }
 
 const NOTHING: CableInput = CableInput { sensor_force_n: f64::NAN, length_m: f64::NAN, speed_m_per_s: f64::NAN };

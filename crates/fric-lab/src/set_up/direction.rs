@@ -146,7 +146,9 @@ impl Direction {
         let [directed, gap, both] = [(DIRECTED, DIRECTED), (GAP, GAP), (DIRECTED, GAP)]
             .map(|(one, other)| strokes.covariance_beside_gain(one, other));
         let (count, ratio) = (strokes.effective_count(), both / directed);
-        if count < PARAMETERS + 1.0 || ratio >= 0.0 {
+        // Strokes of one direction alone do not tell friction from a gain: what of the directed reference is beside it, is rounding.
+        let is_told = directed > ROUNDING * strokes.products[DIRECTED][DIRECTED] / strokes.way_m;
+        if count < PARAMETERS + 1.0 || !is_told || ratio >= 0.0 {
             return None;
         }
         let unexplained_share = (1.0 - both * both / (directed * gap)).max(f64::EPSILON);
@@ -224,6 +226,27 @@ mod tests {
         // Two strokes and a half may be chance.
         assert_eq!(told(1000), None);
         assert_eq!(warning([("still", Direction::default())].into_iter()), None);
+    }
+
+    /// Six winds of one cable, each paid out and reset: friction and a gain of the sensor are the same there.
+    #[test]
+    fn motion_in_one_direction_tells_nothing() {
+        for (swing_n, friction) in [(2.0, 0.03), (2.0, -0.03), (0.0, 0.03)] {
+            let mut direction = Direction::default();
+            for wind in 0..6 {
+                direction.start();
+                for sample in 0..1000 {
+                    let angle = 0.01 * f64::from(sample);
+                    let load_n = 10.0 + swing_n * (angle + f64::from(wind)).sin();
+                    direction.add(
+                        1e-3 * f64::from(sample),
+                        load_n,
+                        load_n * (1.0 - friction) + 0.01 * (37.0 * angle).sin(),
+                    );
+                }
+            }
+            assert_eq!(direction.driving_ratio(), None, "{swing_n}, {friction}");
+        }
     }
 
     /// A log that begins elsewhere ends a stroke and begins another; the step between them is no motion.

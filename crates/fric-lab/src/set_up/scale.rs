@@ -36,6 +36,8 @@ const PULLEY_MISSING: &str =
 const PULLEY_TOO_MANY: &str =
     "a sensor in line with the cable, whose robot file has a pulley of 180° with `sensor = true`";
 
+const EXCHANGED: &str = "sensor and reference exchanged, of which one holds a pulley and the other is in line";
+
 /// Returns the usual cause of a gain of the sensor; `None` if there is none.
 #[must_use]
 pub(crate) fn cause_of_gain(gain: f64) -> Option<&'static str> {
@@ -51,7 +53,9 @@ fn cause(ratio: f64, most_off: f64) -> Option<&'static str> {
 }
 
 fn nearest(causes: &[(f64, &'static str)], ratio: f64, most_off: f64) -> Option<&'static str> {
-    causes.iter().find(|(of, _)| (ratio / of - 1.0).abs() < most_off).map(|(_, cause)| *cause)
+    let off = |(of, _): &&(f64, &str)| (ratio / of - 1.0).abs();
+    let nearest = causes.iter().min_by(|one, other| off(one).total_cmp(&off(other)))?;
+    (off(&nearest) < most_off).then_some(nearest.1)
 }
 
 /// Sums over a cable's samples that have a reference and a force by the sensor.
@@ -144,8 +148,12 @@ impl Scale {
     }
 
     fn cause(&self, ratio: f64) -> Option<&'static str> {
-        let of_pulley = if self.frictionless_gain < 1.0 { (0.5, PULLEY_TOO_MANY) } else { (2.0, PULLEY_MISSING) };
-        nearest(&[of_pulley], ratio, OF_FORCES).or_else(|| cause(ratio, OF_FORCES))
+        let gain = self.frictionless_gain;
+        let of_pulley = if gain < 1.0 { (0.5, PULLEY_TOO_MANY) } else { (2.0, PULLEY_MISSING) };
+        // The sensor's column has the force at the platform, and the reference the force divided by the gain.
+        let exchanged = (is_beyond_friction(gain * gain)).then_some((gain * gain, EXCHANGED));
+        let own: Vec<(f64, &'static str)> = exchanged.into_iter().chain([of_pulley]).chain(CAUSES).collect();
+        nearest(&own, ratio, OF_FORCES).or_else(|| cause(ratio, OF_FORCES))
     }
 }
 
@@ -213,6 +221,13 @@ mod tests {
         let [without, with] = [1.0, 0.5].map(Scale::new);
         assert_eq!([without.cause(1.9), with.cause(1.9)], [Some(PULLEY_MISSING), None]);
         assert_eq!([without.cause(0.52), with.cause(0.52)], [None, Some(PULLEY_TOO_MANY)]);
+        // A quarter is what an exchange makes of a sensor that holds a pulley of 180°, and nearer to that than to pounds.
+        assert_eq!(
+            [without.cause(0.25), with.cause(0.25)].map(|cause| cause.map(|it| it.contains("pounds"))),
+            [Some(true), Some(false)]
+        );
+        assert_eq!(with.cause(0.25), Some(EXCHANGED));
+        assert!(with.cause(0.225).is_some_and(|cause| cause.contains("pounds")));
     }
 
     /// A load of 10 N that varies with the motion, under friction of `mu` in both directions. `shown` is what the sensor makes of the force, and

@@ -19,6 +19,9 @@ mod advice {
         "give the column of `time_s` the `factor` to seconds under `[log.columns]` in the robot file";
     pub const CELL: &str =
         "write digits, without thousands separators, or leave the cell empty where there is no value";
+    pub const DATE: &str = "write a date with the year first, such as 2026-05-03T12:34:56.250, or as 03.05.2026 12:34:56, and \
+                            hours from 0 to 23; with slashes, day and month are not told apart";
+    pub const AGAIN: &str = "the header stands there again: give each recording a file of its own";
     pub const RECORD: &str = "name a complete copy of it, or record again";
     pub const ROWS: &str = "give each row as many cells as the header; numbers with decimal commas need semicolons or \
                             tabs between them";
@@ -72,7 +75,7 @@ pub enum CsvError {
         column: String,
     },
     /// A cell is not a number.
-    #[error("`{}`, line {line}, column `{column}`: `{text}` is no number; {}", path.display(), advice::CELL)]
+    #[error("`{}`, line {line}, column `{column}`: `{text}` is no number; {}", path.display(), cell_advice(column, text))]
     Cell {
         /// The file.
         path: PathBuf,
@@ -129,6 +132,18 @@ const fn time_advice(unit: Option<TimeUnit>) -> &'static str {
     }
 }
 
+fn cell_advice(column: &str, text: &str) -> &'static str {
+    let has_digits = text.contains(|character: char| character.is_ascii_digit());
+    let is_date = has_digits && (text.contains(['/', ':']) || text.matches('-').count() > 1);
+    if text == column {
+        advice::AGAIN
+    } else if is_date {
+        advice::DATE
+    } else {
+        advice::CELL
+    }
+}
+
 fn listed(columns: &[String]) -> String {
     let names: Vec<String> = columns.iter().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
     let more = columns.len().saturating_sub(MOST_LISTED);
@@ -139,14 +154,14 @@ fn listed(columns: &[String]) -> String {
 impl CsvError {
     /// Returns the advice that ends the error's sentence.
     #[must_use]
-    pub const fn advice(&self) -> &'static str {
+    pub fn advice(&self) -> &'static str {
         match self {
             Self::Read { .. } => advice::DISK,
             Self::NotUtf8 { .. } => advice::UTF8,
             Self::NoHeader { .. } => advice::HEADER,
             Self::Missing { .. } => advice::NAME,
             Self::Repeated { .. } => advice::RENAME,
-            Self::Cell { .. } => advice::CELL,
+            Self::Cell { column, text, .. } => cell_advice(column, text),
             Self::Time { unit, .. } => time_advice(*unit),
             Self::NoRow { .. } | Self::NoNumber { .. } => advice::RECORD,
             Self::NoUsableRow { .. } => advice::ROWS,

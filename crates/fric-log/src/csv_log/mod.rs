@@ -371,6 +371,7 @@ impl<'a> Cells<'a> {
         let Columns { force_n, length_m, speed_m_per_s, reference_n, pose, wrench, .. } = columns;
         let has_speed = speed_m_per_s.iter().any(Option::is_some);
         let speed: &[Option<Column>] = if has_speed { speed_m_per_s } else { &[] };
+        let (position, orientation) = pose.split_at(pose.len().min(3));
         for (role, groups) in [
             (
                 Role::Cable,
@@ -381,7 +382,7 @@ impl<'a> Cells<'a> {
                 ][..],
             ),
             (Role::Reference, &[(Some(Quantity::Force), &**reference_n)]),
-            (Role::Pose, &[(None, &**pose)]),
+            (Role::Pose, &[(Some(Quantity::Position), position), (None, orientation)]),
             (Role::Wrench, &[(None, &**wrench)]),
         ] {
             let values = &mut row.values[role as usize];
@@ -403,6 +404,8 @@ impl<'a> Cells<'a> {
                 if matches!(role, Role::Pose | Role::Wrench) { numbers.all(|it| it) } else { numbers.any(|it| it) };
             if !is_known {
                 values.clear();
+            } else if role == Role::Pose {
+                units.add_pose(values);
             }
         }
         Ok(())

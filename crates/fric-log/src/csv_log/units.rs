@@ -6,6 +6,7 @@ pub(super) enum Quantity {
     Force,
     Length,
     Speed,
+    Position,
 }
 
 /// The magnitudes of the values of one quantity.
@@ -19,10 +20,13 @@ struct Sizes {
 /// The magnitudes of all values so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Units {
-    sizes: [Sizes; 3],
+    sizes: [Sizes; 4],
     last_stamp_nanos: Option<i64>,
     /// Number of rows with a time, and of those with the time of the row before.
     timed_count: u64,
+    /// Number of poses, and of those whose quaternion is 0.
+    posed_count: u64,
+    unturned_count: u64,
     repeated_count: u64,
     /// The shortest time from one row to the next.
     least_interval_nanos: Option<u64>,
@@ -32,6 +36,9 @@ pub(super) struct Units {
 /// Interval of the samples above which their times are probably not in seconds: no winch is recorded at less than 5 Hz, and in milliseconds this is
 /// 5 kHz.
 pub const GREAT_INTERVAL_S: f64 = 0.2;
+
+/// Interval of the samples below which their times are probably days: no winch is recorded at more than 500 kHz, and in days this is 6 Hz.
+const SMALL_INTERVAL_S: f64 = 2e-6;
 
 /// Advice for times whose factor is given already.
 const FACTOR_ADVICE: &str =
@@ -106,9 +113,15 @@ impl Units {
         }
     }
 
+    /// Adds the values of a pose, the quaternion last.
+    pub fn add_pose(&mut self, values: &[f64]) {
+        self.posed_count += 1;
+        self.unturned_count += u64::from(values.iter().skip(3).all(|part| *part == 0.0));
+    }
+
     /// Returns warnings about quantities that seem to have another unit, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
-        let [force, length, speed] = self.sizes;
+        let [force, length, speed, position] = self.sizes;
         #[expect(clippy::cast_precision_loss, reason = "a mean for people")]
         let mean = |sizes: Sizes| sizes.sum / sizes.count as f64;
         let warning = |what: &str, value: f64, unit: &str, other: &str, factor: &str| {
@@ -131,6 +144,11 @@ impl Units {
         {
             let advice = if self.time_has_factor { FACTOR_ADVICE } else { unit.advice() };
             warnings.push(format!("the time is at least {interval_s:.4} s from row to row; {advice}"));
+        } else if interval_s > 0.0 && interval_s < SMALL_INTERVAL_S && !self.time_has_factor {
+            warnings.push(format!(
+                "the time is at least {interval_s:.1e} s from row to row, which looks like a spreadsheet's days: if so, give the column of `time_s` \
+                 `factor = 86400.0` under `[log.columns]` in the robot file"
+            ));
         }
         if force.count > 0 && mean(force) > GREAT_FORCE_N {
             warnings.push(warning(
@@ -146,6 +164,15 @@ impl Units {
         }
         if length.greatest > GREAT_LENGTH_M {
             warnings.push(warning("lengths are up to", length.greatest, "m", "millimetres", "0.001"));
+        }
+        if position.greatest > GREAT_LENGTH_M {
+            warnings.push(warning("positions are up to", position.greatest, "m", "millimetres", "0.001"));
+        }
+        if self.unturned_count > 0 {
+            warnings.push(format!(
+                "the quaternion in `pose.qx` to `pose.qw` is 0 in {} of {} rows, which is no rotation, so that they have no pose; that of no turn has `qw` = 1",
+                self.unturned_count, self.posed_count
+            ));
         }
         if speed.greatest > GREAT_SPEED_M_PER_S {
             warnings.push(warning("speeds are up to", speed.greatest, "m/s", "millimetres a second", "0.001"));

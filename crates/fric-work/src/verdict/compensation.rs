@@ -17,6 +17,9 @@ const WORKS: f64 = 0.3;
 /// Remaining fraction of the error above which, on every cable, nearly all of it is something else. Like [`WORKS`] it changes only the wording.
 const HARDLY_HELPS: f64 = 0.9;
 
+/// Number of samples below which an rms is off by a quarter by chance, `1/√(2n)`, and no verdict follows. Like [`WORKS`] it changes only the wording.
+const FEWEST: u64 = 8;
+
 /// Fraction of flagged samples above which they are mentioned.
 const MANY_FLAGGED: f64 = 0.01;
 
@@ -120,12 +123,37 @@ impl ReplayResult {
         let of_wrench = if cables.is_empty() { wrench_left(&wrench) } else { None };
         let shown = if cables.is_empty() { &wrench } else { &cables };
         let least = shown.iter().map(Compared::left).filter(|left| left.is_finite()).fold(1.0, f64::min);
+        // Where the wrench is worse than the forces, the words have to be about it.
+        let of_forces = cables.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
+        let beside = if of_forces <= WORKS {
+            wrench_left(&wrench).filter(|_| wrench.iter().any(|one| one.left() > WORKS))
+        } else {
+            None
+        };
         let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
         let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
-        let left = of_cables.or(of_wrench);
+        let left = match (of_cables, beside) {
+            (Some(forces), Some(wrench)) => Some(format!("{forces}, but {wrench}")),
+            (forces, _) => forces.or(of_wrench),
+        };
+        let flagged = self.cables.iter().filter(|cable| is_many(cable.flagged, cable.samples));
+        let flagged = flagged.max_by_key(|cable| cable.flagged).map(|cable| {
+            let CableResult { name, flagged, samples, .. } = cable;
+            format!(" Flagged samples count in it, {flagged} of {samples} of {name}; see to them first.")
+        });
         let (tone, sentence) = match (worse(&all), left) {
+            _ if !all.is_empty() && self.cycle.count < FEWEST => {
+                let count = counted(self.cycle.count, "usable sample");
+                (Tone::Mixed, format!("The log has {count}, too few for a verdict."))
+            }
+            _ if !all.is_empty() && all.iter().all(|one| one.before == 0.0 && one.after == 0.0) => {
+                let same =
+                    "Sensor and reference are the same to the last digit: is one column or topic named for both?";
+                (Tone::Mixed, same.to_owned())
+            }
             (Some(worse), left) => {
-                (Tone::Bad, left.map_or(worse.clone(), |left| format!("{worse} Elsewhere it leaves {left}.")))
+                let elsewhere = left.map_or_else(String::new, |left| format!(" Elsewhere it leaves {left}."));
+                (Tone::Bad, format!("{worse}{elsewhere}{}", flagged.unwrap_or_default()))
             }
             (None, Some(left)) if greatest <= WORKS => (Tone::Well, format!("Compensation works: it leaves {left}.")),
             (None, Some(left)) if least <= HARDLY_HELPS => {
@@ -133,7 +161,10 @@ impl ReplayResult {
             }
             (None, Some(left)) => (
                 Tone::Bad,
-                format!("Compensation hardly helps: it leaves {left}. Friction by these values makes little of it."),
+                format!(
+                    "Compensation hardly helps: it leaves {left}.{}",
+                    flagged.as_deref().unwrap_or(" Friction by these values makes little of it.")
+                ),
             ),
             (None, None) if self.cables.iter().all(|cable| !cable.is_measured) => {
                 (Tone::Bad, "Nothing is compensated: the log has no force of any sensor.".to_owned())
@@ -256,7 +287,8 @@ fn of_zeros(result: &FitResult) -> Option<String> {
         let offset_n = cable.parameters.get(&key)?;
         let is_fitted = cable.standard_errors.get(&key).is_some();
         // Half of the squares before.
-        let is_most = 2.0 * offset_n * offset_n > cable.before?.rms_n.powi(2);
+        let is_shown = format!("{:.4}", offset_n.abs()) != "0.0000";
+        let is_most = is_shown && 2.0 * offset_n * offset_n > cable.before?.rms_n.powi(2);
         (is_fitted && is_most).then(|| format!("{key} of {} is {} N", cable.name, significant(offset_n)))
     });
     let zeros: Vec<String> = zeros.collect();

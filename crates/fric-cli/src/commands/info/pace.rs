@@ -18,6 +18,8 @@ pub struct Pace {
 #[derive(Debug, Default)]
 pub struct Times {
     pub count: u64,
+    /// Number of intervals; a clock that was set back makes none.
+    interval_count: u64,
     first_nanos: i64,
     last_nanos: i64,
     interval_sum_s: f64,
@@ -31,9 +33,12 @@ impl Times {
             self.first_nanos = at_nanos;
         } else {
             let interval_s = seconds_between(self.last_nanos, at_nanos);
-            self.interval_sum_s += interval_s;
-            self.interval_squares_s2 += interval_s * interval_s;
-            self.longest_s = self.longest_s.max(interval_s);
+            if interval_s >= 0.0 {
+                self.interval_count += 1;
+                self.interval_sum_s += interval_s;
+                self.interval_squares_s2 += interval_s * interval_s;
+                self.longest_s = self.longest_s.max(interval_s);
+            }
         }
         self.count += 1;
         self.last_nanos = at_nanos;
@@ -44,11 +49,17 @@ impl Times {
         (self.count > 0).then_some([self.first_nanos, self.last_nanos])
     }
 
+    /// Returns the time from the first to the last, s. Where the clock was set back that of the parts is added up.
+    pub fn duration_s(&self) -> f64 {
+        let is_in_order = self.interval_count + 1 >= self.count;
+        if is_in_order { seconds_between(self.first_nanos, self.last_nanos) } else { self.interval_sum_s }
+    }
+
     pub fn pace(&self) -> Pace {
         #[expect(clippy::cast_precision_loss, reason = "a count of messages")]
-        let intervals = self.count.saturating_sub(1) as f64;
+        let intervals = self.interval_count as f64;
         let mean_s = self.interval_sum_s / intervals;
-        if self.count < 2 || mean_s <= 0.0 {
+        if self.interval_count == 0 || mean_s <= 0.0 {
             return Pace::default();
         }
         let variance = self.interval_squares_s2 / intervals - mean_s * mean_s;

@@ -8,7 +8,7 @@ use fric_log::log::Storage;
 use indicatif::DecimalBytes;
 use serde::Serialize;
 
-use super::pace::{Pace, Times, seconds_between};
+use super::pace::{Pace, Times};
 use super::{TopicResult, seconds};
 
 /// Times before 1980 count from the beginning of a recording or of a controller, not from 1970.
@@ -76,10 +76,10 @@ impl StorageResult {
 
     /// Sets the rows of a log of rows.
     pub fn set_rows(&mut self, times: &Times) {
-        if let (None, Some([first_nanos, last_nanos])) = (self.start_nanos, times.range_nanos()) {
+        if let (None, Some([first_nanos, _])) = (self.start_nanos, times.range_nanos()) {
             self.start_nanos = u64::try_from(first_nanos).ok();
             self.start_s = self.start_nanos.map(seconds);
-            self.duration_s = Some(seconds_between(first_nanos, last_nanos)).filter(|duration_s| *duration_s >= 0.0);
+            self.duration_s = Some(times.duration_s());
             self.rows = Some(RowsResult { count: times.count, pace: times.pace() });
         }
     }
