@@ -78,6 +78,9 @@ fn in_steady_sliding_each_effect_does_what_its_equation_says() {
             let expected_n = behind_guide(20.0, s, 0.02 * (1.0 + 0.3 * s), 0.0, viscous_n);
             assert_near(slid(WET, &asymmetry), expected_n, 1e-12);
             assert_near(slid(DRY, &[("bearing_drag", "drag_n", 0.25)]), behind_guide(20.0, s, 0.02, 0.25, 0.0), 1e-12);
+            let quadratic = [("viscous_nonlinearity", "quadratic_n_s2_per_m2", 30.0)];
+            let viscous_n = 0.8 * speed + 30.0 * speed * speed.abs();
+            assert_near(slid(WET, &quadratic), behind_guide(20.0, s, 0.02, 0.0, viscous_n), 1e-12);
             // μ grows by 0.3 a second; the last of these cycles is a second after the first.
             let drifted_n = slid(STIFF, &[("friction_drift", "rate_per_s", 0.3)]);
             // The load is taken with the friction of the cycle before.
@@ -161,8 +164,12 @@ fn behind_a_play_a_ripple_follows_the_cable() {
             let cable_m = 1.0 + 0.1 * s - 0.006 * s;
             let angle = std::f64::consts::TAU * cable_m / 0.05;
             let factor = 1.0 + 0.03 * angle.sin() + 0.01 * angle.cos();
-            let slid_n = slide(&mut robot(&GUIDE, presliding, STIFF, &play), 20.0, speed);
-            assert_near(slid_n, behind_guide(20.0, s, 0.02, 0.0, 0.0) * factor, 1e-6);
+            for viscous_n_s_per_m in [0.0, 5.0] {
+                let friction = FrictionOptions { viscous_n_s_per_m, ..STIFF };
+                let slid_n = slide(&mut robot(&GUIDE, presliding, friction, &play), 20.0, speed);
+                let plain_n = behind_guide(20.0, s, 0.02, 0.0, viscous_n_s_per_m * speed);
+                assert_near(slid_n, plain_n * factor, 1e-6);
+            }
         }
     }
 }
@@ -249,10 +256,13 @@ fn friction_goes_with_a_power_of_next_to_no_load() {
 fn both_forms_slide_alike_with_a_power_of_the_load() {
     let load = [("load_nonlinearity", "exponent", 0.7), ("bearing_drag", "drag_n", 0.1)];
     let winch = [SENSOR_180, GUIDE_90, GUIDE_90];
-    for speed in [0.1, -0.1] {
-        let [per_pulley_n, lumped_n] = FORMS.map(|form| slide(&mut robot(&winch, form, DRY, &load), 40.0, speed));
-        assert!((per_pulley_n / lumped_n - 1.0).abs() < 1e-6, "{per_pulley_n} {lumped_n}");
-        assert!((per_pulley_n / 20.0 - 1.0).abs() > 0.01, "no friction");
+    for friction in [DRY, FrictionOptions { viscous_n_s_per_m: 8.0, ..DRY }] {
+        for speed in [0.1, -0.1] {
+            let [per_pulley_n, lumped_n] =
+                FORMS.map(|form| slide(&mut robot(&winch, form, friction, &load), 40.0, speed));
+            assert!((per_pulley_n / lumped_n - 1.0).abs() < 1e-6, "{per_pulley_n} {lumped_n}");
+            assert!((per_pulley_n / 20.0 - 1.0).abs() > 0.01, "no friction");
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use fric_core::effects::{Effect, EffectParams};
 use fric_core::robot::{CableOptions, FrictionOptions, Presliding};
-use fric_core::{AnyCompensator, CableOutput, RobotParams, SnapshotMismatch};
+use fric_core::{AnyCompensator, CableOutput, CableStatus, RobotParams, SnapshotMismatch};
 
 use crate::support::{
     FRICTION, GUIDE_90, SENSOR_180, SWIVEL, UNMONITORED, checked, corner_cable, platform, smooth_input,
@@ -101,4 +101,13 @@ fn a_state_goes_on_with_other_values_of_the_same_structure() {
     for cycle in 200..300 {
         assert_eq!(step(&mut after, cycle), step(&mut twin, cycle));
     }
+    // The last output belongs to it, flags included.
+    let mut silent = smooth_input::<CABLES>(300);
+    silent.cables[1].sensor_force_n = f64::NAN;
+    after.set_input(&silent.cables, silent.pose, 1.0);
+    after.step();
+    assert!(after.outputs()[1].status.contains(CableStatus::SENSOR_NOT_FINITE));
+    twin.restore_words(&after.state_words()).unwrap();
+    assert_eq!(twin.outputs(), after.outputs());
+    assert_eq!(twin.wrench_status(), after.wrench_status());
 }

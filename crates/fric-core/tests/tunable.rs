@@ -497,6 +497,54 @@ fn friction_of_the_whole_cable_goes_to_the_pulleys_by_their_wraps() {
     }
 }
 
+/// A sensor pulley of less than 90° shows its friction the other way round. Where it cancels that of the others to less than a thousandth of their sizes,
+/// or nothing bends the cable at all, no distribution has the force of the whole, and what is stored is released.
+#[test]
+fn friction_that_no_pulley_can_have_is_released() {
+    let (sensor_rad, cancelling) = (0.25 * std::f64::consts::PI, 2.414_213_562_373_095 * 0.765_366_864_730_179_6);
+    let part = cancelling * sensor_rad.cos() * std::f64::consts::SQRT_2;
+    for (second, is_kept) in [(part, false), (part + 0.002, false), (part + 0.02, true), (1.2, true)] {
+        let second_rad = 2.0 * (0.5 * second).asin();
+        let pulleys = [
+            PulleyOptions::Fixed { wrap_rad: sensor_rad, sensor: true },
+            PulleyOptions::Fixed { wrap_rad: second_rad, sensor: false },
+        ];
+        assert_released(&pulleys, [0.765_366_864_730_179_6, second], is_kept);
+    }
+    let straight = PulleyOptions::Fixed { wrap_rad: 0.0, sensor: false };
+    assert_released(&[straight, straight], [0.0; 2], false);
+}
+
+fn assert_released(pulleys: &[PulleyOptions], factors: [f64; 2], is_kept: bool) {
+    let robot = |presliding| {
+        compensator::<1>(&[CableOptions { presliding, friction: FRICTION, ..CableOptions::new(pulleys) }], MONITOR)
+    };
+    let mut tunable = TunableCompensator::new(robot(Presliding::Lumped));
+    let mut output = CycleOutput::default();
+    let mut step = |tunable: &mut TunableCompensator<1>, cycle: u32| {
+        let time_s = f64::from(cycle) * 1e-3;
+        // A sensor that repeats itself would be frozen.
+        let cables = [CableInput { sensor_force_n: 20.0 + time_s, length_m: 0.1 * time_s, speed_m_per_s: 0.0 }];
+        tunable.step_into(&CycleInput { cables, ..CycleInput::default() }, &mut output);
+        output
+    };
+    for cycle in 0..300 {
+        step(&mut tunable, cycle);
+    }
+    let whole_n = step(&mut tunable, 299).cables[0].friction_n;
+    tunable.change(&robot(Presliding::PerPulley), 1).unwrap();
+    let friction_n = step(&mut tunable, 299).cables[0].friction_n;
+    let stored_n = tunable.compensator().pulley_friction_n(0);
+    if is_kept {
+        assert!((friction_n - whole_n).abs() < 1e-12, "{factors:?}: {friction_n} and {whole_n}");
+        assert!((stored_n[0] * factors[1] - stored_n[1] * factors[0]).abs() < 1e-9, "{factors:?}: {stored_n:?}");
+        assert!(stored_n[1].abs() > 1e-3, "{factors:?}: {stored_n:?}");
+    } else {
+        assert!(friction_n.abs() < 1e-12, "{factors:?}: {friction_n}");
+        assert_eq!(stored_n, [0.0; fric_core::robot::MAX_PULLEYS], "{factors:?}");
+    }
+}
+
 #[test]
 fn a_state_that_is_restored_ends_a_change() {
     let mut tunable = TunableCompensator::new(old());
