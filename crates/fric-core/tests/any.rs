@@ -1,14 +1,14 @@
 //! A compensator whose number of cables is known at run time is the one of that number, in everything that it shows.
 
 use fric_core::robot::{CableOptions, FrictionOptions, Presliding};
-use fric_core::{AnyCompensator, CableInput, CableStatus, Compensator, Pose, RobotParams};
+use fric_core::{AnyCompensator, CableInput, CableOutput, CableStatus, Compensator, Pose, RobotParams};
 
 use crate::support::{
     FRICTION, GUIDE_90, SENSOR_180, SWIVEL, UNMONITORED, checked, corner_cable, platform, smooth_input,
 };
 
 fn cables(count: usize) -> Vec<CableOptions<'static>> {
-    let presliding = |index: usize| if index % 2 == 0 { Presliding::PerPulley } else { Presliding::Lumped };
+    let presliding = |index: usize| if index.is_multiple_of(2) { Presliding::PerPulley } else { Presliding::Lumped };
     (0..count).map(|index| corner_cable(index, presliding(index))).collect()
 }
 
@@ -42,7 +42,7 @@ fn agrees<const CABLES: usize>() {
         if cycle == 80 {
             one.reset();
             other.reset();
-            assert!(other.outputs().iter().all(|output| *output == Default::default()));
+            assert!(other.outputs().iter().all(|output| *output == CableOutput::default()));
         }
         let output = one.step(&input);
         other.set_input(&input.cables, input.pose, input.elapsed_cycles);

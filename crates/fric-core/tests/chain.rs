@@ -293,7 +293,7 @@ fn a_slip_limit_does_not_touch_a_cable_without_one() {
     }
 }
 
-/// f_c/σ of one Dahl state: the pulley with the greatest wrap of a chain, or all of them together; a wrap that follows the pose counts as 90°.
+/// `f_c/σ` of one Dahl state: the pulley with the greatest wrap of a chain, or all of them together; a wrap that follows the pose counts as 90°.
 #[test]
 fn the_longest_memory_is_that_of_the_greatest_wrap() {
     let factors = [2.0, std::f64::consts::SQRT_2, std::f64::consts::SQRT_2];

@@ -175,7 +175,7 @@ fn input(cycle: usize, cause: Cause, gain: f64) -> CycleInput<1> {
 }
 
 /// Cycles in which the compensator flags `UNSETTLED`, and those in which the equations do.
-fn unsettled(case: &Case, cause: Cause) -> [Vec<usize>; 2] {
+fn unsettled(case: &Case, by: Cause) -> [Vec<usize>; 2] {
     let mut compensator = case.compensator();
     let ((ratio, drag_n), share) = (case.bears(), case.share().max(1.0));
     let (mut flagged, mut by_hand) = (Vec::new(), Vec::new());
@@ -185,9 +185,9 @@ fn unsettled(case: &Case, cause: Cause) -> [Vec<usize>; 2] {
         compensator.pulley_friction_n(0).iter().map(|friction_n| friction_n.abs()).sum()
     };
     for cycle in 0..CYCLES {
-        let input = input(cycle, cause, case.gain());
+        let input = input(cycle, by, case.gain());
         // The jump lasts until it is taken back, that cycle included.
-        let jump = matches!(cause, Cause::Lie) && LIES.iter().any(|lie| (lie.start..=lie.end).contains(&cycle));
+        let jump = matches!(by, Cause::Lie) && LIES.iter().any(|lie| (lie.start..=lie.end).contains(&cycle));
         let begins = LIES.iter().any(|lie| lie.start == cycle);
         if !jump || begins {
             stored_before_n = stored(&compensator) + if begins && jump { doubtful_n } else { 0.0 };

@@ -515,6 +515,8 @@ fn friction_that_no_pulley_can_have_is_released() {
     assert_released(&[straight, straight], [0.0; 2], false);
 }
 
+#[track_caller]
+#[expect(clippy::unwrap_used, reason = "in a test")]
 fn assert_released(pulleys: &[PulleyOptions], factors: [f64; 2], is_kept: bool) {
     let robot = |presliding| {
         compensator::<1>(&[CableOptions { presliding, friction: FRICTION, ..CableOptions::new(pulleys) }], MONITOR)

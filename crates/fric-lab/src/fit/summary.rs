@@ -193,7 +193,8 @@ fn legend(result: &FitResult) -> String {
     };
     if result.cables.iter().any(is_kept) {
         let mean = if result.cables.len() > 1 { ", and left out of the mean, as are values at a bound" } else { "" };
-        let _ = writeln!(text, "\n(…) is not identified but kept from the robot file{mean}.");
+        text.push('\n');
+        text += &wrapped("", &format!("(…) is not identified but kept from the robot file{mean}."));
     }
     text
 }

@@ -115,8 +115,9 @@ impl Units {
 
     /// Adds the values of a pose, the quaternion last.
     pub fn add_pose(&mut self, values: &[f64]) {
+        let [_, _, _, orientation @ ..] = values else { return };
         self.posed_count += 1;
-        self.unturned_count += u64::from(values.iter().skip(3).all(|part| *part == 0.0));
+        self.unturned_count += u64::from(orientation.iter().all(|part| *part == 0.0));
     }
 
     /// Returns warnings about quantities that seem to have another unit, one sentence each.
