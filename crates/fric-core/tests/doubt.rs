@@ -279,3 +279,24 @@ fn a_doubt_lasts_as_long_as_its_equations_say() {
         }
     }
 }
+
+/// The stretch of a cable may be against the motion of the winch, so that a contact moves by less, and forgets later.
+#[test]
+fn a_doubt_lasts_longer_on_a_cable_that_stretches() {
+    let [stiff, elastic] = [0.0, 3e-4].map(|compliance_m_per_n| {
+        let mut effects = EffectParams::default();
+        effects.set(Effect::CableElasticity, "compliance_m_per_n", compliance_m_per_n).unwrap();
+        let friction = FrictionOptions {
+            mu: PLAIN.mu,
+            sigma_n_per_m: Some(PLAIN.sigma_n_per_m),
+            viscous_n_s_per_m: 0.0,
+            offset_n: 0.0,
+        };
+        let pulleys = [PulleyOptions::Fixed { wrap_rad: FRAC_PI_2, sensor: false }];
+        let options = [CableOptions { friction, effects, ..CableOptions::new(&pulleys) }];
+        let mut compensator = compensator::<1>(&options, MONITOR);
+        let statuses = (0..CYCLES).map(|cycle| compensator.step(&input(cycle, Cause::Lie, 1.0)).cables[0].status);
+        statuses.filter(|status| status.contains(CableStatus::UNSETTLED)).count()
+    });
+    assert!(elastic > stiff && stiff > 100, "{elastic} cycles, {stiff} on a stiff cable");
+}

@@ -54,7 +54,7 @@ impl Replay {
         if !names.is_empty() {
             let names = names.join(", ");
             warnings.push(format!(
-                "the robot file has no friction for {names}: what acts there are effects and offset alone"
+                "the robot file has no `friction` for {names}: what acts there are effects and offset alone"
             ));
         }
         // Poses are not extrapolated past the last one, which is no problem.
