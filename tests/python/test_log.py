@@ -148,10 +148,10 @@ def test_a_simulation_has_the_bits_of_the_command_line(tmp_path, robot):
     assert not np.array_equal(fric.simulate(robot, **options).sensor_force_n, read.sensor_force_n)
 
 
-def test_a_log_read_by_another_table_of_signals_is_told(log):
+def test_a_log_read_with_another_known_reference_is_told(log):
     other = fric.Robot.read(ROBOT)
     other.log.reference = {"constant_n": 5.0}
-    with pytest.warns(fric.LogWarning, match=r"read by another `\[log\]`"):
+    with pytest.warns(fric.LogWarning, match="read with another known `reference`"):
         fric.replay(other, log)
 
 

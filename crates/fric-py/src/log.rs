@@ -370,11 +370,12 @@ impl Log {
         Ok(Some(Self { origin: Arc::clone(&self.origin), ..stated }))
     }
 
-    /// Returns a warning if the log was read by another table `[log]` than a robot's.
+    /// Returns a warning if the log was read with other stated signals than a robot's file has.
     fn read_otherwise(&self, py: Python<'_>, robot: &Robot) -> Vec<String> {
-        let is_other = |own: &Py<Robot>| own.borrow(py).file.options().log != robot.file.options().log;
-        let warning = "the log was read by another `[log]` than that of this robot, and its signals stay as they were read; read it again with \
-                       `robot` for its own";
+        let stated = |of: &Robot| (of.file.params().known_reference(), of.file.options().log.pose_is_from_lengths());
+        let is_other = |own: &Py<Robot>| stated(&own.borrow(py)) != stated(robot);
+        let warning = "the log was read with another known `reference` or `pose` under `[log]` than this robot has, and its signals stay as they were \
+                       read; read it again with `robot` for its own";
         self.robot.as_ref().filter(|own| is_other(own)).map(|_| warning.to_owned()).into_iter().collect()
     }
 
