@@ -15,7 +15,7 @@ use fric_core::{AnyCompensator, CableOutput, CableParams, CableStatus, ParamErro
 
 use crate::clock::Clock;
 use crate::fit::readiness::Tension;
-use crate::set_up::{Motions, SetUp};
+use crate::set_up::{SetUp, Signals};
 use crate::weight::{self, Body};
 
 pub use error::Deviation;
@@ -109,7 +109,7 @@ pub struct Replay {
     wrench_after: WrenchErrors,
     /// `None` without mass or geometry, and after the first measured wrench.
     by_mass: Option<ByMass>,
-    motions: Motions,
+    signals: Signals,
     cycle_count: u64,
     cycle_s: f64,
     clock: Clock,
@@ -186,7 +186,7 @@ impl Replay {
             wrench_before: WrenchErrors::default(),
             wrench_after: WrenchErrors::default(),
             by_mass: ByMass::new(robot),
-            motions: Motions::new(robot),
+            signals: Signals::new(robot),
             cycle_count: 0,
             cycle_s: robot.cycle_s(),
             clock: Clock::new(robot.cycle_s()),
@@ -201,7 +201,7 @@ impl Replay {
         let outside_wrench = self.compensator.step();
         let cycle_ns = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
         self.cycle_count += 1;
-        self.motions.add(sample);
+        self.signals.add(sample);
         let outside_wrench = outside_wrench.filter(|_| self.has_wrench());
         if sample.outside_wrench.is_some() {
             self.by_mass = None;

@@ -38,7 +38,7 @@ impl Replay {
             warnings.push(format!("the wrench is not compared with the platform's weight: {NEVER_QUIET}"));
         }
         warnings.extend(self.cable_warnings(robot));
-        warnings.extend(self.motions.warnings(&robot.cable_names()));
+        warnings.extend(self.signals.warnings(&robot.cable_names()));
         let set_ups = self.cables().iter().map(|cable| cable.set_up);
         warnings.extend(set_up::warnings(robot.cable_names().into_iter().zip(set_ups)));
         warnings
@@ -79,7 +79,7 @@ impl Replay {
             warnings.push(format!("{NEGATIVE_FORCE} of {names}. {}", NEGATIVE_ADVICE.trim_end_matches('.')));
         }
         let still: Vec<&str> =
-            self.motions.still().into_iter().filter_map(|cable| robot.cable_names().get(cable).copied()).collect();
+            self.signals.still().into_iter().filter_map(|cable| robot.cable_names().get(cable).copied()).collect();
         if !still.is_empty() {
             warnings.push(format!(
                 "the length of {} never changes; friction is that of motion, so that none is compensated there",

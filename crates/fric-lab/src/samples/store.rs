@@ -18,7 +18,7 @@ use fric_core::robot::RobotParams;
 use thiserror::Error;
 
 use super::record::{LogZero, Measurements, ROW_WIDTH, Reference, Row, Samples};
-use crate::set_up::Motions;
+use crate::set_up::Signals;
 
 /// Size of the rows that stay in memory, bytes: a minute and three quarters of eight cables at 1 kHz.
 const MEMORY_BYTES: usize = 64 << 20;
@@ -60,8 +60,8 @@ impl StoreError {
 pub struct SampleStore<'a> {
     /// Conditions the samples, and holds those that are not in the file.
     tail: Measurements<'a>,
-    /// Compares the motion with itself.
-    motions: Motions,
+    /// Compares the signals with one another.
+    signals: Signals,
     memory_bytes: usize,
     file: Option<Mutex<File>>,
     /// Number of samples in each block of the file.
@@ -90,7 +90,7 @@ impl<'a> SampleStore<'a> {
     /// Starts another log: the memory of a cable does not carry over.
     pub fn start_log(&mut self) {
         self.tail.start_log();
-        self.motions.start();
+        self.signals.start();
     }
 
     /// Adds the next sample of the log.
@@ -99,7 +99,7 @@ impl<'a> SampleStore<'a> {
     /// [`StoreError`] if the samples no longer fit into memory and the temporary file cannot take them. The store is then of no further use.
     pub fn add(&mut self, sample: &Sample<'_>) -> Result<(), StoreError> {
         self.tail.add(sample);
-        self.motions.add(sample);
+        self.signals.add(sample);
         let row_count: usize = self.tail.samples.iter().map(|of_cable| of_cable.rows.len()).sum();
         if row_count * SAMPLE_BYTES > self.memory_bytes && self.tail.reference() == Reference::Forces {
             self.move_to_file().map_err(StoreError::new)?;
@@ -179,14 +179,14 @@ impl<'a> SampleStore<'a> {
         Ok(Cow::Owned(self.tail.holding(cables, samples.map_err(StoreError::new)?)))
     }
 
-    /// Returns warnings about signals that are slower than the log, and about motions that contradict one another. `names` are those of the cables.
+    /// Returns warnings about signals that are slower than the log or contradict one another. `names` are those of the cables.
     ///
     /// # Errors
     /// [`StoreError`] if the temporary file cannot be read.
     pub fn warnings(&self, names: &[&str]) -> Result<Vec<String>, StoreError> {
         let warnings = self.groups().map(|group| Ok(self.given(group)?.repeat_warnings(names)));
         let slow = warnings.collect::<Result<Vec<_>, StoreError>>()?.concat();
-        Ok(self.motions.warnings(names).into_iter().chain(slow).collect())
+        Ok(self.signals.warnings(names).into_iter().chain(slow).collect())
     }
 
     /// Returns the measurements with the rows of all cables in memory.
@@ -229,7 +229,7 @@ impl<'a> SampleStore<'a> {
 
 impl<'a> From<Measurements<'a>> for SampleStore<'a> {
     fn from(measurements: Measurements<'a>) -> Self {
-        let motions = Motions::new(measurements.robot());
-        Self { tail: measurements, motions, memory_bytes: MEMORY_BYTES, file: None, blocks: Vec::new() }
+        let signals = Signals::new(measurements.robot());
+        Self { tail: measurements, signals, memory_bytes: MEMORY_BYTES, file: None, blocks: Vec::new() }
     }
 }

@@ -1,11 +1,15 @@
-//! What a run tells of its set-up: the scale of the sensor, sign and unit of length and speed, and the geometry, which are often wrong on the first day.
+//! What a run tells of its set-up: the scale of the sensor, sign and unit of length and speed, the geometry, and the order of the cables, which are often
+//! wrong on the first day.
 
 mod direction;
 mod motion;
+mod order;
 mod scale;
 
 use direction::Direction;
-pub(crate) use motion::Motions;
+use fric_core::{RobotParams, Sample};
+use motion::Motions;
+use order::Order;
 use scale::Scale;
 pub(crate) use scale::cause_of_gain;
 
@@ -31,6 +35,40 @@ impl SetUp {
     pub fn add(&mut self, length_m: f64, reference_n: f64, forces_n: [f64; 2]) {
         self.scale.add(reference_n, forces_n);
         self.direction.add(length_m, reference_n, forces_n[0]);
+    }
+}
+
+/// Compares the signals of all cables with one another, sample by sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Signals {
+    motions: Motions,
+    order: Order,
+}
+
+impl Signals {
+    pub fn new(robot: &RobotParams<'_>) -> Self {
+        Self { motions: Motions::new(robot), order: Order::new(robot.cables().len()) }
+    }
+
+    /// Begins another log.
+    pub fn start(&mut self) {
+        self.motions.start();
+    }
+
+    /// Adds a sample.
+    pub fn add(&mut self, sample: &Sample<'_>) {
+        self.motions.add(sample);
+        self.order.add(sample);
+    }
+
+    /// Returns the cables whose length is the same in every sample of the present log.
+    pub fn still(&self) -> Vec<usize> {
+        self.motions.still()
+    }
+
+    /// Returns warnings about signals that contradict one another. `names` are those of the cables.
+    pub fn warnings(&self, names: &[&str]) -> Vec<String> {
+        self.motions.warnings(names).into_iter().chain(self.order.warnings(names)).collect()
     }
 }
 
