@@ -6,7 +6,7 @@ use fric_lab::fit::result::{FitResult, Fits};
 use fric_lab::fit::{FitOptions, Parameter, Reference, Weighing, fit_wrench, rewritten};
 use fric_log::output::OutputFile;
 use fric_work::provenance::shown_path;
-use fric_work::{fit_report, report};
+use fric_work::{fit_report, report, verdict};
 
 use super::continuum;
 use crate::arguments::{FitArguments, ReferenceName};
@@ -72,7 +72,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
         let page = report::fit::page(&outcome, fits.cables(), &json.provenance());
         files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
-    json.finish(&outcome, &fit_report::summary(&outcome), files)
+    json.finish_then(&outcome, &fit_report::summary(&outcome), files, &verdict::of_fit(&outcome).steps())
 }
 
 /// Returns the parameters named on the command line.

@@ -99,5 +99,5 @@ pub fn run(arguments: &ReplayArguments) -> Outcome {
         let page = report::errors::page(&outcome, &series, &json.provenance());
         files.push(Written::new(report.complete_with(&page)?, "the report"));
     }
-    json.finish(&outcome, &outcome.table(*wide), files)
+    json.finish_then(&outcome, &outcome.table(*wide), files, &outcome.verdict().steps())
 }

@@ -4,11 +4,11 @@
 //! index or a page of the file is damaged, the table is read in the order of writing, skipping unreadable parts.
 
 use std::collections::VecDeque;
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, Row};
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempDir};
 
 /// Number of times read at once.
 const PAGE_LEN: u32 = 4096;
@@ -36,6 +36,34 @@ enum Order {
     Number,
 }
 
+/// A temporary copy of a file.
+#[derive(Debug)]
+pub(super) enum TemporaryCopy {
+    /// The decompressed file.
+    Decompressed(NamedTempFile),
+    /// The file and the writes beside it, into which SQLite writes as it reads them.
+    WithWrites(TempDir),
+}
+
+/// Name of a copied file, and the ending of the file with its last writes.
+const DATABASE: &str = "database";
+const WRITES: &str = "-wal";
+
+impl TemporaryCopy {
+    /// Copies a file whose last writes are in a file beside it, as a recorder that was killed leaves them; `None` if there are none.
+    pub fn with_writes(path: &Path) -> io::Result<Option<Self>> {
+        let mut writes = path.as_os_str().to_owned();
+        writes.push(WRITES);
+        if !fs::metadata(&writes).is_ok_and(|writes| writes.len() > 0) {
+            return Ok(None);
+        }
+        let folder = tempfile::tempdir()?;
+        fs::copy(path, folder.path().join(DATABASE))?;
+        fs::copy(writes, folder.path().join(DATABASE.to_owned() + WRITES))?;
+        Ok(Some(Self::WithWrites(folder)))
+    }
+}
+
 /// A file with messages.
 #[derive(Debug)]
 pub(super) struct Database {
@@ -43,8 +71,8 @@ pub(super) struct Database {
     pub path: PathBuf,
     pub len: u64,
     connection: Connection,
-    /// The decompressed temporary file, which is kept while it is read.
-    _unpacked: Option<NamedTempFile>,
+    /// The temporary copy that is read in place of the file, and kept meanwhile.
+    _copy: Option<TemporaryCopy>,
     order: Order,
     keys: VecDeque<Key>,
     /// The last message read in the order of time, and the last number tried in the other order.
@@ -58,17 +86,20 @@ pub(super) struct Database {
 }
 
 impl Database {
-    /// Opens a file, or its decompressed copy.
-    pub fn open(path: &Path, len: u64, unpacked: Option<NamedTempFile>) -> rusqlite::Result<Self> {
-        let file = unpacked.as_ref().map_or(path, NamedTempFile::path);
-        let connection = connect(file)?;
+    /// Opens a file, or a copy of it.
+    pub fn open(path: &Path, len: u64, copy: Option<TemporaryCopy>) -> rusqlite::Result<Self> {
+        let connection = match &copy {
+            None => connect(path),
+            Some(TemporaryCopy::Decompressed(file)) => connect(file.path()),
+            Some(TemporaryCopy::WithWrites(folder)) => Connection::open(folder.path().join(DATABASE)),
+        }?;
         // A file that is shorter than its header states is read as far as possible.
         connection.pragma_update(None, "writable_schema", true)?;
         let mut database = Self {
             path: path.to_owned(),
             len,
             connection,
-            _unpacked: unpacked,
+            _copy: copy,
             order: Order::Time,
             keys: VecDeque::new(),
             last: (i64::MIN, i64::MIN),
@@ -213,23 +244,15 @@ impl Database {
 /// Opens a database without writing anything beside it.
 fn connect(path: &Path) -> rusqlite::Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let mut log = path.as_os_str().to_owned();
-    log.push("-wal");
-    // Data that the recorder had not yet merged are in a file beside it, and are read with it.
-    let has_log = fs::metadata(log).is_ok_and(|log| log.len() > 0);
-    match path.to_str().filter(|_| !has_log) {
-        Some(text) => {
-            let mut address = String::from("file:");
-            for character in text.chars() {
-                match character {
-                    '%' => address.push_str("%25"),
-                    '?' => address.push_str("%3f"),
-                    '#' => address.push_str("%23"),
-                    other => address.push(other),
-                }
-            }
-            Connection::open_with_flags(address + "?immutable=1", flags | OpenFlags::SQLITE_OPEN_URI)
+    let Some(text) = path.to_str() else { return Connection::open_with_flags(path, flags) };
+    let mut address = String::from("file:");
+    for character in text.chars() {
+        match character {
+            '%' => address.push_str("%25"),
+            '?' => address.push_str("%3f"),
+            '#' => address.push_str("%23"),
+            other => address.push(other),
         }
-        None => Connection::open_with_flags(path, flags),
     }
+    Connection::open_with_flags(address + "?immutable=1", flags | OpenFlags::SQLITE_OPEN_URI)
 }

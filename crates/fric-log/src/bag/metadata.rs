@@ -34,11 +34,12 @@ impl Files {
         let shown = folder.display();
         let Some(names) = listed else {
             let remark = || {
-                format!(
-                    "`{shown}` has no {METADATA} that can be read, as where the recorder was ended: the {} files there are \
-                     read",
-                    there.len()
-                )
+                let all = if there.len() == 1 {
+                    "its file is".to_owned()
+                } else {
+                    format!("all its {} files are", there.len())
+                };
+                format!("`{shown}` has no {METADATA} that can be read, as where the recorder was ended: {all} read")
             };
             let remarks = (!there.is_empty()).then(remark).into_iter().collect();
             return Ok(Self { paths: there, remarks });

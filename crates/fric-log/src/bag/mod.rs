@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 pub(crate) use self::unpack::Unpacker;
 
-use self::database::{Database, StoredTopic};
+use self::database::{Database, StoredTopic, TemporaryCopy};
 use self::metadata::Files;
 use crate::recording::{Channel, Message, Recording, RecordingError, Schema, SourceFile, open_file};
 
@@ -71,7 +71,7 @@ pub(crate) fn open_folder(folder: &Path) -> Result<(Opened, Vec<String>), Record
             unpacked = Some(target);
         }
         if begins_with(&file, SQLITE).map_err(refused)? {
-            databases.push(database(&path, len, unpacked)?);
+            databases.push(database(&path, len, unpacked.map(TemporaryCopy::Decompressed))?);
         } else {
             let len = file.metadata().map_err(refused)?.len();
             mcaps.push(SourceFile { path, file, len });
@@ -102,8 +102,10 @@ pub(crate) fn open_files(paths: &[&Path]) -> Result<Option<Bag>, RecordingError>
     if databases.is_empty() { Ok(None) } else { Bag::new(databases).map(Some) }
 }
 
-fn database(path: &Path, len: u64, unpacked: Option<tempfile::NamedTempFile>) -> Result<Database, RecordingError> {
-    Database::open(path, len, unpacked).map_err(|error| unreadable(path, &error))
+fn database(path: &Path, len: u64, decompressed: Option<TemporaryCopy>) -> Result<Database, RecordingError> {
+    let refused = |source| RecordingError::Open { path: path.to_owned(), source };
+    let copy = decompressed.map_or_else(|| TemporaryCopy::with_writes(path), |copy| Ok(Some(copy))).map_err(refused)?;
+    Database::open(path, len, copy).map_err(|error| unreadable(path, &error))
 }
 
 fn unreadable(path: &Path, error: &rusqlite::Error) -> RecordingError {

@@ -96,6 +96,8 @@ impl CsvLog {
         let refused = |source| CsvError::Read { path: path.to_owned(), source };
         let mut beginning = Vec::new();
         file.by_ref().take(BEGINNING_BYTES).read_to_end(&mut beginning).map_err(refused)?;
+        // What a power failure leaves of the last rows is zeros.
+        beginning.truncate(beginning.len() - beginning.iter().rev().take_while(|byte| **byte == 0).count());
         let is_named =
             path.extension().is_some_and(|it| it.eq_ignore_ascii_case("csv") || it.eq_ignore_ascii_case("tsv"));
         if beginning.starts_with(b"\xff\xfe") || beginning.starts_with(b"\xfe\xff") {
@@ -238,6 +240,7 @@ impl CsvLog {
         remarks.extend(columns.units_remark(path, form));
         remarks.retain(|remark| !self.remarks.contains(remark));
         self.remarks.extend(remarks);
+        self.units.begin_file();
         let refused = |source| CsvError::Read { path: path.clone(), source };
         let mut rows = file.try_clone().map_err(refused)?;
         rows.seek(SeekFrom::Start(form.rows_at)).map_err(refused)?;
@@ -372,6 +375,7 @@ impl<'a> Cells<'a> {
         let has_speed = speed_m_per_s.iter().any(Option::is_some);
         let speed: &[Option<Column>] = if has_speed { speed_m_per_s } else { &[] };
         let (position, orientation) = pose.split_at(pose.len().min(3));
+        let mut place = 0;
         for (role, groups) in [
             (
                 Role::Cable,
@@ -389,12 +393,14 @@ impl<'a> Cells<'a> {
             values.clear();
             for (quantity, columns) in groups {
                 for column in *columns {
-                    let value = match column {
-                        Some(column) => column.value(self.number(column)?),
-                        None => f64::NAN,
+                    let Some(column) = column else {
+                        values.push(f64::NAN);
+                        continue;
                     };
+                    let value = column.value(self.number(column)?);
                     if let Some(quantity) = quantity {
-                        units.add(*quantity, value);
+                        units.add(place, *quantity, &column.table.column, value);
+                        place += 1;
                     }
                     values.push(value);
                 }

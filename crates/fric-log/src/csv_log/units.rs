@@ -9,18 +9,32 @@ pub(super) enum Quantity {
     Position,
 }
 
-/// The magnitudes of the values of one quantity.
-#[derive(Debug, Clone, Copy, Default)]
+impl Quantity {
+    const fn unit(self) -> &'static str {
+        match self {
+            Self::Force => "N",
+            Self::Length | Self::Position => "m",
+            Self::Speed => "m/s",
+        }
+    }
+}
+
+/// The magnitudes of the values of one column.
+#[derive(Debug, Clone)]
 struct Sizes {
+    quantity: Quantity,
+    column: String,
     count: u64,
     sum: f64,
     greatest: f64,
 }
 
 /// The magnitudes of all values so far.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Units {
-    sizes: [Sizes; 4],
+    /// Those of each column, file by file, and where the columns of the present file begin.
+    sizes: Vec<Sizes>,
+    first_of_file: usize,
     last_stamp_nanos: Option<i64>,
     /// Number of rows with a time, and of those with the time of the row before.
     timed_count: u64,
@@ -88,13 +102,21 @@ const GREAT_LENGTH_M: f64 = 150.0;
 const GREAT_SPEED_M_PER_S: f64 = 30.0;
 
 impl Units {
-    /// Adds a converted value.
-    pub fn add(&mut self, quantity: Quantity, value: f64) {
-        if value.is_finite() {
-            let Sizes { count, sum, greatest } = &mut self.sizes[quantity as usize];
-            *count += 1;
-            *sum += value.abs();
-            *greatest = greatest.max(value.abs());
+    /// Begins a file, which may have other columns than the one before.
+    pub fn begin_file(&mut self) {
+        self.first_of_file = self.sizes.len();
+    }
+
+    /// Adds the converted value of a quantity in the column of this name. `place` is that of the column among those of the file.
+    pub fn add(&mut self, place: usize, quantity: Quantity, column: &str, value: f64) {
+        let place = self.first_of_file + place;
+        if self.sizes.len() <= place {
+            self.sizes.push(Sizes { quantity, column: column.to_owned(), count: 0, sum: 0.0, greatest: 0.0 });
+        }
+        if let Some(sizes) = self.sizes.get_mut(place).filter(|_| value.is_finite()) {
+            sizes.count += 1;
+            sizes.sum += value.abs();
+            sizes.greatest = sizes.greatest.max(value.abs());
         }
     }
 
@@ -122,15 +144,6 @@ impl Units {
 
     /// Returns warnings about quantities that seem to have another unit, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
-        let [force, length, speed, position] = self.sizes;
-        #[expect(clippy::cast_precision_loss, reason = "a mean for people")]
-        let mean = |sizes: Sizes| sizes.sum / sizes.count as f64;
-        let warning = |what: &str, value: f64, unit: &str, other: &str, factor: &str| {
-            format!(
-                "{what} {value:.4} {unit}, which looks like {other}: if so, give the columns `factor = {factor}` under \
-                 `[log.columns]` in the robot file"
-            )
-        };
         let mut warnings = Vec::new();
         #[expect(clippy::cast_precision_loss, reason = "a duration for people")]
         let interval_s = self.least_interval_nanos.map_or(0.0, |nanos| nanos as f64 * 1e-9);
@@ -151,32 +164,40 @@ impl Units {
                  `factor = 86400.0` under `[log.columns]` in the robot file"
             ));
         }
-        if force.count > 0 && mean(force) > GREAT_FORCE_N {
-            warnings.push(warning(
-                "forces are on average",
-                mean(force),
-                "N",
-                "grams (or millinewtons, factor 0.001)",
-                "0.00980665",
+        let of = |quantity| self.sizes.iter().filter(move |of| of.quantity == quantity && of.count > 0);
+        #[expect(clippy::cast_precision_loss, reason = "a mean for people")]
+        let mean_n = |of: &Sizes| of.sum / of.count as f64;
+        let greatest = |of: &Sizes| of.greatest;
+        // The columns beyond a limit are named, unless it is all of them.
+        let mut warn = |quantity, what: &str, size: &dyn Fn(&Sizes) -> f64, most: f64, other: &str, factor: &str| {
+            let great: Vec<&Sizes> = of(quantity).filter(|of| size(of) > most).collect();
+            let Some(value) = great.iter().map(|of| size(of)).reduce(f64::max) else { return };
+            let columns = if great.len() < of(quantity).count() {
+                let mut names: Vec<String> = great.iter().map(|of| format!("`{}`", of.column)).collect();
+                names.dedup();
+                format!("in {} ", names.join(", "))
+            } else {
+                String::new()
+            };
+            warnings.push(format!(
+                "{columns}{what} {value:.4} {}, which looks like {other}: if so, give the columns `factor = {factor}` under `[log.columns]` in the robot file",
+                quantity.unit()
             ));
+        };
+        let grams = "grams (or millinewtons, factor 0.001)";
+        warn(Quantity::Force, "forces are on average", &mean_n, GREAT_FORCE_N, grams, "0.00980665");
+        let greatest_n = of(Quantity::Force).map(greatest).fold(0.0, f64::max);
+        if greatest_n < SMALL_FORCE_N {
+            warn(Quantity::Force, "forces are at most", &greatest, 0.0, "kilonewtons", "1000");
         }
-        if force.greatest > 0.0 && force.greatest < SMALL_FORCE_N {
-            warnings.push(warning("forces are at most", force.greatest, "N", "kilonewtons", "1000"));
-        }
-        if length.greatest > GREAT_LENGTH_M {
-            warnings.push(warning("lengths are up to", length.greatest, "m", "millimetres", "0.001"));
-        }
-        if position.greatest > GREAT_LENGTH_M {
-            warnings.push(warning("positions are up to", position.greatest, "m", "millimetres", "0.001"));
-        }
+        warn(Quantity::Length, "lengths are up to", &greatest, GREAT_LENGTH_M, "millimetres", "0.001");
+        warn(Quantity::Position, "positions are up to", &greatest, GREAT_LENGTH_M, "millimetres", "0.001");
+        warn(Quantity::Speed, "speeds are up to", &greatest, GREAT_SPEED_M_PER_S, "millimetres a second", "0.001");
         if self.unturned_count > 0 {
             warnings.push(format!(
                 "the quaternion in `pose.qx` to `pose.qw` is 0 in {} of {} rows, which is no rotation, so that they have no pose; that of no turn has `qw` = 1",
                 self.unturned_count, self.posed_count
             ));
-        }
-        if speed.greatest > GREAT_SPEED_M_PER_S {
-            warnings.push(warning("speeds are up to", speed.greatest, "m/s", "millimetres a second", "0.001"));
         }
         warnings
     }

@@ -22,8 +22,8 @@ pub struct Log {
     pub(crate) content: Content,
     /// Remarks from opening the log.
     remarks: Vec<String>,
-    /// For messages of a bag of MCAP files, which may be compressed individually.
-    unpacker: Option<Unpacker>,
+    /// For messages of a bag's MCAP files, which may be compressed individually.
+    unpacker: Unpacker,
 }
 
 /// The storage of a log.
@@ -45,7 +45,7 @@ impl From<Recording> for Log {
 
 impl Log {
     fn of(content: Content) -> Self {
-        Self { content, remarks: Vec::new(), unpacker: None }
+        Self { content, remarks: Vec::new(), unpacker: Unpacker::default() }
     }
 
     /// Opens the files of one log, in any order, or the folder of a bag.
@@ -59,9 +59,7 @@ impl Log {
         {
             let (opened, remarks) = bag::open_folder(folder)?;
             return Ok(match opened {
-                Opened::Recording(recording) => {
-                    Self { remarks, unpacker: Some(Unpacker::default()), ..(*recording).into() }
-                }
+                Opened::Recording(recording) => Self { remarks, ..(*recording).into() },
                 Opened::Bag(bag) => Self { remarks, ..Self::of(Content::Bag(Box::new(bag))) },
             });
         }
@@ -107,11 +105,10 @@ impl Log {
     pub fn next_message(&mut self) -> Result<Option<Message<'_>>, RecordingError> {
         match &mut self.content {
             Content::Recording(recording) => {
-                let message = recording.next_message()?;
-                let Some((message, unpacker)) = message.zip(self.unpacker.as_mut()) else { return Ok(message) };
+                let Some(message) = recording.next_message()? else { return Ok(None) };
                 // Data other than CDR may begin like compressed data.
                 let is_cdr = message.channel.message_encoding == "cdr";
-                let data = if is_cdr { unpacker.content(message.data) } else { message.data };
+                let data = if is_cdr { self.unpacker.content(message.data) } else { message.data };
                 Ok(Some(Message { data, ..message }))
             }
             Content::Bag(bag) => Ok(bag.next_message()),
@@ -186,7 +183,7 @@ impl Log {
             Content::Bag(bag) => bag.warnings(),
             Content::Csv(table) => table.warnings(),
         });
-        warnings.extend(self.unpacker.as_ref().and_then(Unpacker::warning));
+        warnings.extend(self.unpacker.warning());
         warnings
     }
 

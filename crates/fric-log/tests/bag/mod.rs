@@ -173,6 +173,29 @@ fn a_file_that_is_cut_off_is_read_as_far_as_it_goes() {
     }
 }
 
+/// A recorder that was killed leaves its last messages beside the database. Nothing is written there.
+#[test]
+fn writes_beside_the_database_are_read_and_left_as_they_are() {
+    let (recorded, killed) = (Folder::new(), Folder::new());
+    let path = recorded.path("run.db3");
+    write(&path, every_ms(0, 100), plain, true);
+    let recorder = Connection::open(&path).unwrap();
+    recorder.pragma_update(None, "journal_mode", "WAL").unwrap();
+    for stamp in every_ms(100, 200) {
+        let row = (stamp, message(stamp));
+        recorder.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (7, ?1, ?2)", row).unwrap();
+    }
+    let names = ["run.db3", "run.db3-wal"];
+    for name in names {
+        fs::copy(recorded.path(name), killed.path(name)).unwrap();
+    }
+    let contents = || names.map(|name| fs::read(killed.path(name)).unwrap());
+    let before = contents();
+    assert_eq!(killed.read().0, times(0, 200).0);
+    assert_eq!(contents(), before);
+    assert_eq!(fs::read_dir(killed.path(".")).unwrap().count(), 2);
+}
+
 #[test]
 fn a_compressed_message_that_is_damaged_is_left_out() {
     let folder = Folder::new();

@@ -245,6 +245,20 @@ fn values_that_look_like_another_unit_are_warned_of() {
     read(&text("20", "800", "0.3")).warns(&["lengths are up to 800", "millimetres", "factor = 0.001"]);
     read(&text("20", "1.5", "300")).warns(&["speeds are up to 300", "millimetres a second"]);
     read(&text("0.02", "1.5", "0.3")).warns(&["forces are at most 0.02", "kilonewtons"]);
+    // Only the columns that look so are named.
+    let two = "time_s,a.force_n,a.length_m,a.reference_n\n0,5000,1.5,9\n0.001,5000,1.5,9\n";
+    read(two).warns(&["in `a.force_n` forces are on average 5000", "grams"]);
+    let three = "time_s,a.force_n,a.length_m,a.reference_n\n0,0.05,1.5,9\n0.001,0.05,1.5,9\n";
+    assert!(read(three).warnings.is_empty(), "a slack cable");
+}
+
+/// A file system leaves zeros where the power failed.
+#[test]
+fn zeros_behind_the_rows_are_no_table() {
+    let rows: String = (0..50).map(|at| format!("0.{at:03},1,2\n")).collect();
+    let read = read(&format!("time_s,a.force_n,a.length_m\n{rows}0.05{}", "\0".repeat(4096)));
+    assert_eq!(read.rows.len(), 50);
+    read.warns(&["is cut off"]);
 }
 
 #[test]

@@ -8,6 +8,8 @@ mod manipulator;
 
 use std::fmt;
 
+use fric_lab::text::wrapped;
+
 pub use compensation::{left_in_words, of_fit, of_hysteresis};
 pub use discovery::of_discovery;
 pub use manipulator::{of_calibration, of_hole, of_hole_frictions, of_shapes, of_tendon, of_tendon_fit};
@@ -32,6 +34,19 @@ pub struct Verdict {
     pub sentence: String,
     /// What to do, in sentences.
     pub todo: Vec<String>,
+}
+
+impl Verdict {
+    /// Returns what to do, for a terminal; empty if all is well.
+    #[must_use]
+    pub fn steps(&self) -> String {
+        if self.tone == Tone::Well {
+            return String::new();
+        }
+        std::iter::once("What to do:\n".to_owned())
+            .chain(self.todo.iter().map(|sentence| wrapped("- ", sentence)))
+            .collect()
+    }
 }
 
 /// Formats a number of things, such as "1 cable" or "2 cables".
