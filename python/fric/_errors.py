@@ -4,7 +4,13 @@ import re
 
 
 class FricError(Exception):
-    """Base class of all errors of fric."""
+    """Base class of all errors of fric. Two of one class with the same text are equal, as a pickled one is to its copy."""
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (type(self) is type(other) and str(self) == str(other))
+
+    def __hash__(self) -> int:
+        return hash((type(self), str(self)))
 
 
 class ConfigError(FricError, ValueError):

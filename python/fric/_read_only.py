@@ -1,4 +1,4 @@
-"""Arrays, lists, and dicts of results, which nobody changes."""
+"""Arrays, lists, and dicts that nobody changes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 def _refuse(self: Any, *arguments: Any, **named: Any) -> NoReturn:
     kind = "dict" if isinstance(self, dict) else "list"
-    raise TypeError(f"this {kind} is part of a result and read-only; change a copy, `{kind}(...)`")
+    raise TypeError(f"this {kind} is read-only; change a copy, `{kind}(...)`")
 
 
 class ReadOnlyDict(dict[Any, Any]):

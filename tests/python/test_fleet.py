@@ -150,6 +150,31 @@ def test_only_what_a_result_depends_on_is_computed_again(place, whole, cluster):
     assert counts() == (1, 2)
 
 
+def test_an_error_goes_with_its_log_and_results_are_no_logs(place, cluster):
+    logs = place / "renamed"
+    results = logs / "results"
+    logs.mkdir()
+    (logs / "broken.csv").write_text("no table at all\n" * 20)
+    (logs / "0.csv").write_bytes((place / "logs" / "week00.csv").read_bytes())
+
+    def failures():
+        done = fleet.run("fit", logs / "**" / "*", results=results, model=place / "robot.toml", client=cluster)
+        return done.logs, [failure.log for failure in done.failures], [failure.error for failure in done.failures], str(done)
+
+    count, broken, (first,), _ = failures()
+    assert (count, broken) == (2, [str(logs / "broken.csv")])
+    (logs / "broken.csv").rename(logs / "other.csv")
+    (logs / "copy.csv").write_text("no table at all\n" * 20)
+    count, broken, errors, told = failures()
+    assert (count, broken) == (3, [str(logs / "copy.csv"), str(logs / "other.csv")])
+    assert [error.replace(log, str(logs / "broken.csv")) for log, error in zip(broken, errors)] == [first, first]
+    assert f"{logs / 'copy.csv'} and 1 more log: " in told and told.count("\n") == 2
+    (whole,) = [path for path in results.rglob("*.parquet") if "-failed" not in path.name]
+    whole.write_bytes(whole.read_bytes()[:-20])
+    with pytest.raises(fric.OutputError, match=f"the result {whole} is damaged; delete it and run again"):
+        fleet.trend(results)
+
+
 def test_other_operations_and_addresses(place, cluster):
     paths = [f"file://{place}/logs/week0[01].csv", place / "logs" / "week00.csv"]
     model = fric.Robot.read(place / "robot.toml")
@@ -172,7 +197,7 @@ def test_what_is_remote_is_fetched(place):
     memory = fsspec.filesystem("memory")
     for name in ("week00.csv", "week01.csv"):
         memory.pipe_file(f"/bucket/2025/{name}", (place / "logs" / name).read_bytes())
-    found = _logs.find("memory://bucket/**/*.csv")
+    found = _logs.find("memory://bucket/**/*.csv", "memory:///bucket/2025/results")
     assert [log.address for log in found] == ["memory:///bucket/2025/week00.csv", "memory:///bucket/2025/week01.csv"]
     with _logs.fetched(found[0].address) as path:
         assert path.suffix == ".csv" and _logs.content_hash(path) == _logs.content_hash(place / "logs" / "week00.csv")
@@ -284,6 +309,36 @@ def test_a_fleet_without_changes_has_no_alarm():
     found = fleet.trend(pyarrow.concat_tables(tables))
     assert len(found.series) == 20 and found.alarms == ()
     assert "nothing has changed" in str(found) and "Nothing: all parameters are what they were" in found.to_html()
+
+
+def test_a_change_of_the_model_is_none_of_the_machine():
+    series = made(2, "step")
+    whole, day = table(series), series[0]
+
+    def found(switch):
+        models = ["old" if one < switch else "new" for one in day]
+        return fleet.trend(whole.append_column("model_hash", [models]))
+
+    with_it = found(day[series[3]])
+    (change,) = with_it.series[0].changes
+    assert change.of_model and with_it.alarms == ()
+    assert "nothing has changed but values that go with another model" in str(with_it) and "run all logs with the same ones" in str(with_it)
+    assert "within their scatter" not in with_it.to_html()
+    apart = found(day[series[3] // 2])
+    assert not apart.series[0].changes[0].of_model and len(apart.alarms) == 1
+
+
+def test_effects_that_come_and_go_are_told():
+    start = [DAY + datetime.timedelta(weeks=week) for week in range(8)]
+    names = {"operation": "discover", "robot": "rig", "cable": "cable1"}
+    rows = [{**names, "parameter": "mu", "value": 0.02, "standard_error": 1e-4, "start": one, "state": "fitted", "log_hash": str(one)} for one in start]
+    rows += [{**row, "parameter": f"found.{kind}", "state": "found", "value": 1.0} for kind, since in (("stribeck", 4), ("sensor_gain", 0)) for row in rows[since:8]]
+    found = fleet.trend(pyarrow.Table.from_pylist(rows))
+    gain, stribeck = found.named
+    assert (gain.kind, gain.logs, gain.of_logs, gain.first) == ("sensor_gain", 8, 8, DAY)
+    assert (stribeck.kind, stribeck.logs, stribeck.of_logs, stribeck.first) == ("stribeck", 4, 8, start[4])
+    assert "nothing has changed but effects that only some logs show" in str(found)
+    assert f"stribeck is named on rig cable1 in 4 of 8 logs, first on {start[4]:%Y-%m-%d}" in str(found) and "sensor_gain" not in str(found)
 
 
 def test_few_logs_are_no_good_news():

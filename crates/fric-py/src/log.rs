@@ -180,8 +180,9 @@ impl Log {
     }
 
     /// Whether the log has a signal of this name.
-    fn __contains__(&self, py: Python<'_>, name: &str) -> Outcome<bool> {
-        Ok(self.signals(py)?.contains(&name))
+    fn __contains__(&self, py: Python<'_>, name: &Bound<'_, PyAny>) -> Outcome<bool> {
+        let signals = self.signals(py)?;
+        Ok(name.extract::<&str>().is_ok_and(|name| signals.contains(&name)))
     }
 
     /// The names of the signals that are known at any time of the log.
@@ -453,7 +454,7 @@ fn read(
     let robot = match robot {
         Some(robot) => robot.borrow().clone(),
         None => AttachedRobot::find(&source)?.map(|attached| Robot::new(attached.robot, attached.text)).ok_or_else(
-            || Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give the robot as `robot`")),
+            || Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give its robot")),
         )?,
     };
     let file = robot.file.clone();

@@ -17,9 +17,9 @@ Needs `pip install dask distributed fsspec pyarrow ruptures`: Dask for the worke
 
 from ._errors import FleetError
 from ._run import FleetRun, LogFailure, run
-from ._trend import Alarm, Change, Series, Trend, trend
+from ._trend import Alarm, Change, NamedEffect, Series, Trend, trend
 
-__all__ = ["Alarm", "Change", "FleetError", "FleetRun", "LogFailure", "Series", "Trend", "run", "trend"]
+__all__ = ["Alarm", "Change", "FleetError", "FleetRun", "LogFailure", "NamedEffect", "Series", "Trend", "run", "trend"]
 
 for _name in __all__:
     globals()[_name].__module__ = "fric.fleet"

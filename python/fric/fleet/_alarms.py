@@ -48,7 +48,7 @@ def _together(series: tuple[Series, ...]) -> list[list[tuple[Series, Change]]]:
     Changes belong together if they may have the same date. Slopes also do if one begins while the other continues, because a parameter that the model
     lacks bends the other parameters. A change of the residual error follows from a parameter that has changed before.
     """
-    changes = [(one, change) for one in series for change in one.changes]
+    changes = [(one, change) for one in series for change in one.changes if not change.of_model]
     parameters = [pair for pair in changes if not _follows(pair[1])]
     groups: list[list[tuple[Series, Change]]] = []
     for pair in sorted(parameters, key=lambda pair: pair[1].delta_bic):

@@ -32,11 +32,11 @@ class LogAddress:
     """Hash of the address, the size, and the date of change or checksum, as the file system lists them. The content is not read for it."""
 
 
-def find(paths: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> list[LogAddress]:
+def find(paths: str | os.PathLike[str] | Sequence[str | os.PathLike[str]], results: str) -> list[LogAddress]:
     """Returns all logs that paths, globs, and fsspec addresses name, each once, ordered by address.
 
-    A folder named by itself is a log (a bag). Among the matches of a glob, logs are files and folders with a `metadata.yaml`. Raises
-    LogFileNotFoundError for a path that matches nothing.
+    A folder named by itself is a log (a bag). Among the matches of a glob, logs are files and folders with a `metadata.yaml`, without those in the
+    folder of the results. Raises LogFileNotFoundError for a path that matches nothing.
     """
     path = (str, os.PathLike)
     must_be("paths", paths, _PATHS, *path, Iterable)
@@ -47,7 +47,8 @@ def find(paths: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> li
     for one in asked:
         must_be("paths", one, _PATHS, *path)
         found.update((log.address, log) for log in _matches(os.fspath(one)))
-    return [found[address] for address in sorted(found)]
+    inside = f"{results.rstrip('/')}/"
+    return [found[address] for address in sorted(found) if not address.startswith(inside)]
 
 
 @contextmanager

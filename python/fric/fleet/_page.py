@@ -85,6 +85,8 @@ def _made() -> str:
 def _overview(trend: Trend) -> str:
     if not trend.alarms and not may_show_a_change(trend):
         return f"<h2>What has changed</h2><p>Nothing can be told: {TOO_FEW}.</p>"
+    if not trend.alarms and any(change.of_model for one in trend.series for change in one.changes):
+        return "<h2>What has changed</h2><p>Values that go with another model or other options, and no others.</p>"
     if not trend.alarms:
         return '<h2>What has changed</h2><p class="good">Nothing: all parameters are what they were, within their scatter.</p>'
     rows = [

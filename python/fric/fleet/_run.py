@@ -38,10 +38,11 @@ class LogFailure(Value):
 
 def told_once(failures: Sequence[LogFailure]) -> list[tuple[str, str]]:
     """Returns each error once, after the log that it concerns, or the first of them and the number of the others."""
-    logs: dict[str, list[str]] = {}
+    alike: dict[str, list[LogFailure]] = {}
     for failure in failures:
-        logs.setdefault(failure.error, []).append(failure.log)
-    return [(first + (f" and {counted(len(more), 'more log')}" if more else ""), error) for error, (first, *more) in logs.items()]
+        # The errors of several logs may differ only in the names of these.
+        alike.setdefault(failure.error.replace(f"`{failure.log}`", ""), []).append(failure)
+    return [(first.log + (f" and {counted(len(more), 'more log')}" if more else ""), first.error) for first, *more in alike.values()]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -111,11 +112,12 @@ def run(
     checked(operation, options)
     text = _text_of(model)
     key = key_of(__version__, operation, options, None if text is None else model_hash(text))
-    logs, store = find(paths), Store(_absolute(results))
+    store = Store(_absolute(results))
+    logs = find(paths, store.address)
     there, seen = store.names(), store.seen()
     missing, earlier = _missing(logs, seen, there, key)
     states = {"computed": 0, "known": len(logs) - len(missing)}
-    failures = [LogFailure(*error) for error in store.errors(earlier)]
+    failures = [_renamed(address, *store.error_at(path)) for address, path in earlier]
     states["known"] -= len(failures)
     show = Bar() if progress is True else progress or _nothing
     show(1.0 if not missing else 1 - len(missing) / len(logs))
@@ -143,13 +145,20 @@ def _note(outcome: Outcome, store: Store, states: dict[str, int], failures: list
         states[outcome.state] += 1
 
 
-def _missing(logs: list[LogAddress], seen: dict[str, str], there: dict[str, str], key: str) -> tuple[list[LogAddress], list[str]]:
-    """Returns the logs without a result, and the paths of the errors of those that failed before."""
+def _renamed(address: str, log: str, error: str) -> LogFailure:
+    """Returns the error that was stored for a log which now has another address."""
+    return LogFailure(address, error.replace(f"`{log}`", f"`{address}`"))
+
+
+def _missing(
+    logs: list[LogAddress], seen: dict[str, str], there: dict[str, str], key: str
+) -> tuple[list[LogAddress], list[tuple[str, str]]]:
+    """Returns the logs without a result, and address and path of the error of those that failed before."""
     missing, failed = [], []
     for log in logs:
         name = f"{seen.get(log.stamp)}-{key}"
         if name + FAILED in there:
-            failed.append(there[name + FAILED])
+            failed.append((log.address, there[name + FAILED]))
         elif name not in there:
             missing.append(log)
     return missing, failed

@@ -31,6 +31,8 @@ _COLUMNS = {
     "log_hash": "string",
     "error": "string",
     "computed": "stamp",
+    "model_hash": "string",
+    "options": "string",
 }
 
 
@@ -45,6 +47,23 @@ class Values:
     value: NDArray[np.float64]
     standard_error: NDArray[np.float64]
     logs: tuple[str, ...]
+    models: tuple[tuple[str | None, str | None], ...]
+    """Model and options of each log, as far as they are known."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Effect that a discovery has named on a cable, in some logs or in all."""
+
+    robot: str
+    cable: str
+    kind: str
+    logs: int
+    """Number of logs in which it was named."""
+    of_logs: int
+    """Number of logs of the robot."""
+    first_nanos: int
+    """Start of the first log in which it was named."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +77,8 @@ class Gathered:
     """Logs whose clock has no date."""
     logs: int
     """Number of logs with results and a date."""
+    found: tuple[Found, ...]
+    """Effects that a discovery has named."""
 
 
 def gather(results: Any, operation: str | None) -> Gathered:
@@ -76,7 +97,26 @@ def gather(results: Any, operation: str | None) -> Gathered:
     dated = good.filter(has_date)
     logs = dated.group_by(["robot", "start", "log_hash"]).aggregate([]).num_rows
     operation = operation or "fit"
-    return Gathered(operation, _split(dated, operation), failures, tuple(sorted(undated)), logs)
+    return Gathered(operation, _split(dated, operation), failures, tuple(sorted(undated)), logs, _found(dated))
+
+
+def _found(table: Any) -> tuple[Found, ...]:
+    """Returns the effects that a discovery has named, by robot, cable, and kind."""
+    compute = need("pyarrow.compute")
+    logs = table.group_by(["robot", "start", "log_hash"]).aggregate([]).column("robot").to_pylist()
+    rows = table.filter(compute.equal(compute.fill_null(table.column("state"), ""), "found"))
+    groups = rows.group_by(["robot", "cable", "parameter"]).aggregate([("start", "min"), ("start", "count")]).to_pylist()
+    return tuple(
+        Found(
+            str(one["robot"]),
+            str(one["cable"]),
+            str(one["parameter"]).removeprefix("found."),
+            int(one["start_count"]),
+            logs.count(one["robot"]),
+            int(one["start_min"]),
+        )
+        for one in sorted(groups, key=lambda one: (one["robot"], one["cable"], one["parameter"]))
+    )
 
 
 def _failures(failed: Any, good: Any) -> tuple[LogFailure, ...]:
@@ -115,7 +155,7 @@ def _split(table: Any, operation: str) -> tuple[Values, ...]:
     edges = np.flatnonzero(np.any(np.diff(codes, axis=1) != 0, axis=0)) + 1
     bounds = [0, *edges.tolist(), table.num_rows] if table.num_rows else [0]
     start, value, error = (table.column(name).to_numpy() for name in ("start", "value", "standard_error"))
-    logs = table.column("log")
+    logs, models, options = (table.column(name) for name in ("log", "model_hash", "options"))
     return tuple(
         Values(
             str(robots[begin]),
@@ -125,6 +165,7 @@ def _split(table: Any, operation: str) -> tuple[Values, ...]:
             value[begin:end].copy(),
             error[begin:end].copy(),
             tuple(str(log) for log in logs[begin:end].to_pylist()),
+            tuple(zip(models[begin:end].to_pylist(), options[begin:end].to_pylist())),
         )
         for begin, end in zip(bounds, bounds[1:])
     )

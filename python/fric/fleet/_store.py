@@ -84,10 +84,16 @@ class Store:
         """Returns whether there is a result at a path."""
         return bool(self._fs.exists(path))
 
-    def error_at(self, path: str) -> str | None:
+    def error_of(self, path: str) -> str | None:
         """Returns the sentence of the error that is stored instead of a result; None if there is none."""
         failed = _of_error(path)
-        return self.errors([failed])[0][1] if self._fs.exists(failed) else None
+        return self.error_at(failed)[1] if self._fs.exists(failed) else None
+
+    def error_at(self, path: str) -> tuple[str, str]:
+        """Returns the log and the sentence of an error that was written."""
+        sheet = io.BytesIO(self._fs.cat_file(path))
+        [row] = need("pyarrow.parquet").read_table(sheet, columns=["log", "error"]).to_pylist()
+        return row["log"], row["error"]
 
     def write(self, path: str, rows: list[dict[str, Any]], *, failed: bool = False) -> None:
         """Writes the rows of a log, either completely or not at all."""
@@ -127,12 +133,6 @@ class Store:
             self._put(f"{self._root}/{_SEEN}/{uuid.uuid4().hex}.txt", "\n".join(self._pending).encode())
         self._pending, self._flushed_s = [], time.monotonic()
 
-    def errors(self, paths: list[str]) -> list[tuple[str, str]]:
-        """Returns the log and the sentence of each error that was written."""
-        parquet = need("pyarrow.parquet")
-        rows = (parquet.read_table(io.BytesIO(self._fs.cat_file(path)), columns=["log", "error"]).to_pylist() for path in paths)
-        return [(row["log"], row["error"]) for table in rows for row in table]
-
     def table(self) -> Any:
         """Returns all rows as a `pyarrow.Table`, with `operation`, `robot`, and `month`."""
         pa, dataset = need("pyarrow"), need("pyarrow.dataset")
@@ -142,7 +142,23 @@ class Store:
             raise ConfigError(f"{self.address} has no results; fric.fleet.run writes them")
         hive = dataset.partitioning(parts, flavor="hive")
         every = pa.unify_schemas([schema(), parts])
-        return dataset.dataset(paths, schema=every, filesystem=self._fs, partitioning=hive, partition_base_dir=self._root).to_table()
+        try:
+            return dataset.dataset(paths, schema=every, filesystem=self._fs, partitioning=hive, partition_base_dir=self._root).to_table()
+        except (pa.ArrowInvalid, OSError) as error:
+            broken = [path for path in paths if not self._is_whole(path)]
+            if not broken:
+                raise
+            more = f" and {len(broken) - 1} more" if len(broken) > 1 else ""
+            text = f"the result {broken[0]}{more} is damaged; delete it and run again, which computes its log anew"
+            raise OutputError(text) from error
+
+    def _is_whole(self, path: str) -> bool:
+        pa = need("pyarrow")
+        try:
+            need("pyarrow.parquet").read_table(io.BytesIO(self._fs.cat_file(path)))
+        except (pa.ArrowInvalid, OSError):
+            return False
+        return True
 
     def _put(self, path: str, content: bytes) -> None:
         folder, _, name = path.rpartition("/")

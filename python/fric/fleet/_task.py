@@ -94,8 +94,6 @@ def _of_file(job: Job, path: Path, state: _State) -> Outcome:
         warnings.simplefilter("always")
         state.log = read_log(path, state.robot)
         state.robot = state.robot or state.log.robot
-        if state.robot is None:
-            raise LogError(f"{job.log.address} has no robot file attached; give the robot as `model`")
         state.path = store.path(job.operation, state.robot.name, _month(state.log), state.log_hash, job.key)
         if known := _known(store, job, state):
             return known
@@ -111,7 +109,7 @@ def _known(store: Store, job: Job, state: _State) -> Outcome | None:
     path = state.path or ""
     if store.written(path):
         return Outcome(job.log, "known", state.log_hash)
-    error = store.error_at(path)
+    error = store.error_of(path)
     return None if error is None else Outcome(job.log, "failed", state.log_hash, error)
 
 

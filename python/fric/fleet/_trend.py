@@ -54,6 +54,26 @@ class Change(Value):
     delta_bic: float
     """Evidence: negative values favour the change, and -10 does very strongly. It accounts for the odds of finding a change by chance among all logs
     and series."""
+    of_model: bool
+    """Whether model or options of the logs change within the interval too, which may be the reason; such a change is no alarm."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class NamedEffect(Value):
+    """Effect that the discovery of some logs has named, or that of all."""
+
+    robot: str
+    """Name of the robot."""
+    cable: str
+    """Name of the cable."""
+    kind: str
+    """Name of the effect."""
+    logs: int
+    """Number of logs in which it is named."""
+    of_logs: int
+    """Number of logs of the robot."""
+    first: datetime
+    """Start of the first log in which it is named, UTC."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -124,6 +144,8 @@ class Trend(Result):
     """Logs without a result, with the reason."""
     undated: tuple[str, ...]
     """Logs that are excluded because their clock has no date."""
+    named: tuple[NamedEffect, ...]
+    """Effects that a discovery has named, by robot, cable, and kind. They are no series."""
 
     def of(self, robot: str, cable: str, parameter: str) -> Series:
         """Returns the series of a robot, cable, and parameter."""
@@ -147,7 +169,7 @@ def trend(results: Any, *, operation: Literal["discover", "fit", "replay"] | Non
 
     A change is a step or the start of a slope. It is reported if there is evidence for it after accounting for the standard errors, the scatter from
     log to log, outliers, a slow wander, and the number of dates and series among which it was found. At least three logs must lie on each side of it.
-    If a log was computed more than once, the last result counts.
+    If a log was computed more than once, the last result counts. A change that falls on one of the model or of the options is told, but is no alarm.
 
     Raises ConfigError if there are no results or a name is invalid, and ShapeError for a table without these columns.
     """
@@ -201,6 +223,7 @@ def _change(values: Values, found: Course, place: int, change: Found) -> Change:
         float(found.coefficients[column]),
         float(np.sqrt(found.covariance[column, column])),
         change.delta_bic,
+        len(set(values.models[max(change.earliest - 1, 0) : change.latest + 1])) > 1,
     )
 
 
@@ -211,9 +234,13 @@ def _assembled(gathered: Gathered, series: tuple[Series, ...], courses: list[Cou
 
     last_limit = _beyond_by_chance(_FALSE_ALARMS / max(1, len(series)))
     alarms = alarms_of(series, [abs(one.last_t) > last_limit for one in courses])
-    bare = Trend(Shown("", "", "", ""), gathered.operation, gathered.logs, series, alarms, gathered.failures, gathered.undated)
-    shown = Shown(summary_of(bare), json_of(bare), page(bare), table_of(bare))
-    return Trend(shown, gathered.operation, gathered.logs, series, alarms, gathered.failures, gathered.undated)
+    named = tuple(NamedEffect(one.robot, one.cable, one.kind, one.logs, one.of_logs, _date(one.first_nanos)) for one in gathered.found)
+
+    def with_texts(shown: Shown) -> Trend:
+        return Trend(shown, gathered.operation, gathered.logs, series, alarms, gathered.failures, gathered.undated, named)
+
+    bare = with_texts(Shown("", "", "", ""))
+    return with_texts(Shown(summary_of(bare), json_of(bare), page(bare), table_of(bare)))
 
 
 def _checked(limits: Limits, series: tuple[Values, ...]) -> dict[str, tuple[float | None, float | None]]:

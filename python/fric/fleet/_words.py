@@ -13,7 +13,7 @@ from .._results.base import counted
 from ._alarms import day
 from ._joints import LEAST_LOGS
 from ._run import told_once
-from ._trend import Alarm, Change, Series, Trend
+from ._trend import Alarm, Change, NamedEffect, Series, Trend
 
 FORMAT = "fric-trend/1"
 TOO_FEW = f"too few logs with a date, {2 * LEAST_LOGS} of each robot are needed"
@@ -37,7 +37,24 @@ def headline(trend: Trend) -> str:
     examined = f"{counted(trend.logs, 'log')} of {counted(robots, 'robot')}, {len(trend.series)} series by fric {trend.operation}"
     if trend.alarms:
         return f"{examined}: {counted(len(trend.alarms), 'alarm')}"
-    return f"{examined}: {'nothing has changed' if may_show_a_change(trend) else TOO_FEW}"
+    return f"{examined}: {'nothing has changed' + _but(trend) if may_show_a_change(trend) else TOO_FEW}"
+
+
+def _but(trend: Trend) -> str:
+    """Returns what is no alarm and yet no sameness, the end of a sentence; empty if there is nothing of it."""
+    parts = ["values that go with another model"] * bool(_of_model(trend))
+    parts += ["effects that only some logs show"] * bool(_at_times(trend))
+    return f" but {' and '.join(parts)}" if parts else ""
+
+
+def _of_model(trend: Trend) -> list[tuple[Series, Change]]:
+    """Returns the changes that fall on one of the model or of the options."""
+    return [(one, change) for one in trend.series for change in one.changes if change.of_model]
+
+
+def _at_times(trend: Trend) -> list[NamedEffect]:
+    """Returns the effects that are named in some logs only."""
+    return [one for one in trend.named if one.logs < one.of_logs]
 
 
 def may_show_a_change(trend: Trend) -> bool:
@@ -55,7 +72,7 @@ def verdict(trend: Trend) -> str:
     if not trend.alarms and not may_show_a_change(trend):
         return f"This cannot tell whether anything has changed: {TOO_FEW}."
     if not trend.alarms:
-        return f"Nothing has changed on {fleet}."
+        return f"Nothing has changed on {fleet}{_but(trend)}."
     places = list(dict.fromkeys(f"{one.robot} {one.cable}" for one in trend.alarms))
     named = ", ".join(places[:3]) + (f" and {len(places) - 3} more" if len(places) > 3 else "")
     return f"Something is to be done at {counted(len(places), 'place')} of {fleet}: {named}."
@@ -77,6 +94,13 @@ def remarks(trend: Trend) -> list[str]:
         names = ", ".join(f"{one.robot} {one.cable} {one.parameter}" for one in wandering[:3])
         wander = "wanders, with no date at which it begins to" if len(wandering) == 1 else "wander, with no date at which they begin to"
         texts.append(f"{len(wandering)} series {wander}: {names}{' …' if len(wandering) > 3 else ''}")
+    if of_model := _of_model(trend):
+        names = ", ".join(f"{one.robot} {one.cable} {one.parameter} on {day(change.date)}" for one, change in of_model[:3])
+        changes = "1 change falls" if len(of_model) == 1 else f"{len(of_model)} changes fall"
+        rest = " …" if len(of_model) > 3 else ""
+        texts.append(f"{changes} on another model or other options and is no alarm ({names}{rest}); run all logs with the same ones")
+    for one in _at_times(trend):
+        texts.append(f"{one.kind} is named on {one.robot} {one.cable} in {one.logs} of {one.of_logs} logs, first on {day(one.first)}")
     if trend.failures:
         texts.append(f"{counted(len(trend.failures), 'log')} gave no result")
     return texts
@@ -103,6 +127,7 @@ def json_of(trend: Trend) -> str:
         "series": [_series(one) for one in trend.series],
         "failures": [vars(one) for one in trend.failures],
         "undated": trend.undated,
+        "named": [_plain(vars(one)) for one in trend.named],
         "provenance": provenance(),
     }
     return json.dumps(found, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

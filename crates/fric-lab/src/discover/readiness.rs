@@ -80,7 +80,9 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
 
 /// Returns what is missing if this is the duration of the samples with a reference, s.
 pub fn too_short(samples_s: f64) -> Option<Lack> {
-    let cause = || format!("{samples_s:.1} s of samples with a reference are too few, {LEAST_S} s are needed");
+    let cause = || {
+        format!("{:.1} s of samples with a reference are too few, {LEAST_S} s are needed", below(samples_s))
+    };
     (samples_s < LEAST_S).then(|| Lack::new(cause(), LONGER))
 }
 
@@ -98,8 +100,9 @@ pub fn lack_of_samples(counts: &SampleCounts, interval_s: f64) -> Option<Lack> {
     }
     if warm_up_is_most {
         let cause = format!(
-            "{used_s:.1} s of samples are too few, {LEAST_S} s are needed: before them, {:.1} s of motion pass until it has \
+            "{:.1} s of samples are too few, {LEAST_S} s are needed: before them, {:.1} s of motion pass until it has \
              forgotten the friction stored in it when the log began",
+            below(used_s),
             seconds(warm_up, interval_s)
         );
         return Some(Lack::new(cause, LONGER));
@@ -109,7 +112,13 @@ pub fn lack_of_samples(counts: &SampleCounts, interval_s: f64) -> Option<Lack> {
     } else {
         "See the flags with `fric-cli replay`."
     };
-    Some(Lack::new(format!("only {used_s:.1} s of its samples can be used: {LEAST_S} s are needed"), advice))
+    let cause = format!("only {:.1} s of its samples can be used: {LEAST_S} s are needed", below(used_s));
+    Some(Lack::new(cause, advice))
+}
+
+/// Rounds down to a tenth, so that too few seconds look like it.
+fn below(seconds: f64) -> f64 {
+    (seconds * 10.0).floor() / 10.0
 }
 
 /// Returns the reason if the noise cannot be estimated.

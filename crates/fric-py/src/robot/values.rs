@@ -2,7 +2,7 @@
 
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyMapping, PyMappingProxy, PyString, PyTuple};
+use pyo3::types::{PyDict, PyMapping, PyString, PyTuple};
 use toml::{Table, Value};
 
 /// Returns numbers, text, tuples and read-only dicts: nothing that could be changed behind the robot's back.
@@ -22,7 +22,7 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyA
             for (key, value) in table {
                 dict.set_item(key, to_python(py, value)?)?;
             }
-            Ok(PyMappingProxy::new(py, dict.as_mapping()).into_any())
+            py.import("fric._read_only")?.getattr("ReadOnlyDict")?.call1((dict,))
         }
     }
 }
