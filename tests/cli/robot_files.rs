@@ -120,6 +120,9 @@ fn what_is_no_regular_file_is_not_waited_for() {
     for file in [pipe.to_str().unwrap(), "/dev/zero"] {
         place.run_in_vain(&["replay", "log.mcap", "--model", file]).fails(1, &[file, "no regular file"]);
         place.run_in_vain(&["replay", file, "--model", "robot.toml"]).fails(1, &[file]);
+        place
+            .run_in_vain(&["excite", "--model", "robot.toml", "--for", file, "-o", "run.csv"])
+            .fails(1, &[file, "regular"]);
         place.run_in_vain(&["continuum", "friction", file, "--model", "tendon.toml"]).fails(1, &[file, "regular"]);
     }
 }

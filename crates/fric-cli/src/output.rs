@@ -3,6 +3,7 @@
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use fric_core::text_file::harmless;
 use fric_lab::text::{WIDTH, wrapped};
 use fric_log::output::{CompleteFile, OutputFile, directory_of};
 use fric_work::provenance::Provenance;
@@ -149,15 +150,6 @@ pub fn show(text: &str) -> Outcome {
 /// Prints bytes to stdout as they are.
 pub fn print(bytes: &[u8]) -> Outcome {
     print_to(std::io::stdout(), "stdout", bytes)
-}
-
-/// Removes characters that a terminal would interpret as commands.
-fn harmless(text: &str) -> String {
-    let is_order = |character: char| character.is_control() && character != '\n';
-    let escaped = |character: char| {
-        if is_order(character) { character.escape_default().to_string() } else { character.to_string() }
-    };
-    if text.contains(is_order) { text.chars().map(escaped).collect() } else { text.to_owned() }
 }
 
 /// Whether the path is `-`, which means stdout.

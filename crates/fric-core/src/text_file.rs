@@ -1,6 +1,6 @@
 //! Small texts from outside the program: reading never blocks, whatever the path leads to, and quoting lets nothing but plain text reach a terminal.
 
-use std::borrow::ToOwned;
+use std::borrow::{Cow, ToOwned as _};
 use std::format;
 use std::fs::{self, File};
 use std::io::{Error, ErrorKind, Read as _, Result};
@@ -16,6 +16,14 @@ pub const MOST_BYTES: usize = 1 << 20;
 /// Returns the errors of the operating system, and errors for anything that is not a regular file (a pipe may never have a writer, a device may never
 /// end), is larger, or is not UTF-8.
 pub fn read(path: &Path) -> Result<String> {
+    read_within(path, MOST_BYTES)
+}
+
+/// Reads the text of a regular file of at most so many bytes.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_within(path: &Path, most_bytes: usize) -> Result<String> {
     // The path is checked first, because opening a pipe would wait for its writer.
     let metadata = fs::metadata(path)?;
     if metadata.is_dir() {
@@ -24,12 +32,12 @@ pub fn read(path: &Path) -> Result<String> {
     if !metadata.is_file() {
         return Err(Error::new(ErrorKind::InvalidInput, "it is no regular file (a pipe or a device)"));
     }
-    if metadata.len() > MOST_BYTES as u64 {
-        return Err(Error::new(ErrorKind::FileTooLarge, "it has more than 1 MiB"));
+    if metadata.len() > most_bytes as u64 {
+        return Err(Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MiB", most_bytes >> 20)));
     }
     let mut text = String::new();
     // The limit also applies to a file that grows while it is read.
-    File::open(path)?.take(MOST_BYTES as u64).read_to_string(&mut text)?;
+    File::open(path)?.take(most_bytes as u64).read_to_string(&mut text)?;
     Ok(text)
 }
 
@@ -47,6 +55,24 @@ pub fn name_problem(name: &str) -> Option<String> {
 
 /// Maximum length of a quotation in one sentence, in characters.
 const MOST_QUOTED: usize = 1000;
+
+/// Escapes the characters of a text that command a terminal, all control characters but line breaks and tabs.
+#[must_use]
+pub fn harmless(text: &str) -> Cow<'_, str> {
+    let is_order = |character: char| character.is_control() && !['\n', '\t'].contains(&character);
+    if !text.contains(is_order) {
+        return Cow::Borrowed(text);
+    }
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        if is_order(character) {
+            escaped.extend(character.escape_default());
+        } else {
+            escaped.push(character);
+        }
+    }
+    Cow::Owned(escaped)
+}
 
 /// Returns a text as one printable line: control characters escaped, and a long text cut to its beginning.
 #[must_use]

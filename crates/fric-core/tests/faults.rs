@@ -270,6 +270,32 @@ fn sensor_lies_without_a_range() {
     }
 }
 
+/// However long a sensor has shown nothing new, at rest or dropped out, a change beyond what ten cycles can do is told.
+#[test]
+fn sensor_lies_after_a_rest_or_a_silence() {
+    for presliding in FORMS {
+        for is_silent in [false, true] {
+            for more_n in [20.0, 1e2, 1e3, 1e5] {
+                let mut compensator = compensator::<1>(&[corner_cable(0, presliding)], MONITOR);
+                for cycle in 0..FIRST + 2000 + 88 {
+                    let mut input = smooth_input::<1>(cycle.min(FIRST));
+                    let cable = &mut input.cables[0];
+                    if cycle > FIRST {
+                        cable.speed_m_per_s = 0.0;
+                    }
+                    let (is_resting, lies) = (cycle > FIRST, cycle >= FIRST + 2000);
+                    cable.sensor_force_n += if lies { more_n } else { 0.0 };
+                    if is_silent && is_resting && !lies {
+                        cable.sensor_force_n = f64::NAN;
+                    }
+                    let status = compensator.step(&input).cables[0].status;
+                    assert_eq!(status.contains(CableStatus::SENSOR_JUMP), lies, "{more_n} N, cycle {cycle}: {status}");
+                }
+            }
+        }
+    }
+}
+
 /// A level that stays is taken for the load after 5 s.
 #[test]
 fn a_step_of_the_load_is_believed_in_the_end() {

@@ -170,9 +170,13 @@ impl CompleteFile {
     /// Puts the file in its place.
     ///
     /// # Errors
-    /// Returns an [`OutputError`] if the file system reports an error, or if another file has appeared in its place and `force` is not set.
+    /// Returns an [`OutputError`] if the file system reports an error, if another file has appeared in its place and `force` is not set, or if that is no regular file.
     pub fn place(self) -> Result<(), OutputError> {
         let OutputFile { path, file, force } = self.0;
+        // It may have appeared since the file was begun.
+        if fs::symlink_metadata(&path).is_ok_and(|place| !place.is_file()) {
+            return Err(OutputError::NotRegular { path });
+        }
         let placed = if force { file.persist(&path) } else { file.persist_noclobber(&path) };
         match placed.map_err(|error| error.error) {
             Ok(_) => Ok(()),

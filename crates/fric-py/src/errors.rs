@@ -4,6 +4,7 @@ use std::io;
 use std::path::Path;
 
 use fric_core::robot::file::RobotFileError;
+use fric_core::text_file::harmless;
 use fric_core::{ParamError, SnapshotMismatch};
 use fric_lab::discover::DiscoverError;
 use fric_lab::excite::ExcitationError;
@@ -42,50 +43,60 @@ pub struct Fault(PyErr);
 /// The result of a call.
 pub type Outcome<T = ()> = Result<T, Fault>;
 
+/// Length of a message, characters: a log may have thousands of names, and each may be long.
+const MOST_CHARACTERS: usize = 4000;
+
+/// Returns a message without what a log's text may do to a terminal, and of bounded length.
+pub fn legible(text: String) -> String {
+    let cut =
+        text.char_indices().nth(MOST_CHARACTERS).map(|(at, _)| format!("{}…", text.get(..at).unwrap_or_default()));
+    harmless(&cut.unwrap_or(text)).into_owned()
+}
+
 impl Fault {
     /// Creates the error of an invalid parameter, key or option.
     pub fn config(text: impl Into<String>) -> Self {
-        Self(ConfigError::new_err(text.into()))
+        Self(ConfigError::new_err(legible(text.into())))
     }
 
     /// Creates the error of a missing robot or manipulator file.
     fn no_config(text: String, path: &Path) -> Self {
-        Self(ConfigFileNotFoundError::new_err((NO_ENTRY, text, path.to_owned())))
+        Self(ConfigFileNotFoundError::new_err((NO_ENTRY, legible(text), path.to_owned())))
     }
 
     /// Creates the error of a missing log.
     fn no_log(text: String, path: &Path) -> Self {
-        Self(LogFileNotFoundError::new_err((NO_ENTRY, text, path.to_owned())))
+        Self(LogFileNotFoundError::new_err((NO_ENTRY, legible(text), path.to_owned())))
     }
 
     /// Creates the error of an argument that is not an array of numbers.
     pub fn array_type(text: impl Into<String>) -> Self {
-        Self(ArrayTypeError::new_err(text.into()))
+        Self(ArrayTypeError::new_err(legible(text.into())))
     }
 
     /// Creates the error of data that allow no fit.
     pub fn fit(text: impl Into<String>) -> Self {
-        Self(FitError::new_err(text.into()))
+        Self(FitError::new_err(legible(text.into())))
     }
 
     /// Creates the error of an object that another call uses.
     pub fn in_use(text: impl Into<String>) -> Self {
-        Self(InUseError::new_err(text.into()))
+        Self(InUseError::new_err(legible(text.into())))
     }
 
     /// Creates the error of an unusable log.
     pub fn log(text: impl Into<String>) -> Self {
-        Self(LogError::new_err(text.into()))
+        Self(LogError::new_err(legible(text.into())))
     }
 
     /// Creates the error of a file that cannot be written.
     pub fn output(text: impl Into<String>) -> Self {
-        Self(OutputError::new_err(text.into()))
+        Self(OutputError::new_err(legible(text.into())))
     }
 
     /// Creates the error of an array with the wrong shape, type or content.
     pub fn shape(text: impl Into<String>) -> Self {
-        Self(ShapeError::new_err(text.into()))
+        Self(ShapeError::new_err(legible(text.into())))
     }
 }
 

@@ -19,7 +19,7 @@ use pyo3::types::{PyIterator, PySlice, PyTuple};
 
 use crate::arguments::{argument, refused};
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, numbers, stamps_nanos};
-use crate::errors::{Fault, Outcome};
+use crate::errors::{Fault, Outcome, legible};
 use crate::robot::{Robot, cables_in_words};
 use crate::watch::{STRIDE, Watch};
 
@@ -453,9 +453,9 @@ fn read(
     let source = py.detach(|| LogSource::open(&sources))?;
     let robot = match robot {
         Some(robot) => robot.borrow().clone(),
-        None => AttachedRobot::find(&source)?.map(|attached| Robot::new(attached.robot, attached.text)).ok_or_else(
-            || Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give its robot")),
-        )?,
+        None => AttachedRobot::find(&source)?
+            .map(|attached| Robot::new(attached.robot, attached.text))
+            .ok_or_else(|| Fault::log(format!("the log has no robot file attached ({ROBOT_FILE}); give its robot")))?,
     };
     let file = robot.file.clone();
     let names = file.cable_names();
@@ -524,7 +524,7 @@ fn too_great(columns: &SampleColumns, names: &[&str]) -> Vec<String> {
 pub fn warn(py: Python<'_>, texts: &[String]) -> Outcome {
     for text in texts {
         let category = py.import("fric._errors")?.getattr("LogWarning")?;
-        py.import("warnings")?.call_method1("warn", (text, category))?;
+        py.import("warnings")?.call_method1("warn", (legible(text.clone()), category))?;
     }
     Ok(())
 }

@@ -34,5 +34,18 @@ pub fn json(result: &impl Serialize, provenance: &Provenance) -> Result<String, 
         result: &'a T,
         provenance: &'a Provenance,
     }
-    serde_json::to_string_pretty(&WithProvenance { result, provenance }).map(|text| text + "\n")
+    let text = serde_json::to_string_pretty(&WithProvenance { result, provenance })?;
+    Ok(without_c1(&text) + "\n")
+}
+
+/// Escapes the control characters that JSON leaves in its strings, which some terminals obey.
+fn without_c1(text: &str) -> String {
+    let is_order = |character: char| ('\u{7f}'..='\u{9f}').contains(&character);
+    if !text.contains(is_order) {
+        return text.to_owned();
+    }
+    let escaped = |character: char| {
+        if is_order(character) { format!("\\u{:04x}", u32::from(character)) } else { character.to_string() }
+    };
+    text.chars().map(escaped).collect()
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use fric_core::text_file::read_within;
 use fric_lab::excite::{
     Excitation, ExcitationError, ExcitationOptions, Experiment, Question, STANDARD_DURATION_S, design,
 };
@@ -94,8 +95,11 @@ fn asked(model: &Model, arguments: &DesignArguments) -> Outcome<Option<(&'static
     }
 }
 
+/// Size of a result that is read, bytes; that of a discovery has some hundred kilobytes.
+const MOST_FOUND_BYTES: usize = 64 << 20;
+
 fn read_text(path: &Path) -> Outcome<String> {
-    std::fs::read_to_string(path).map_err(|error| {
+    read_within(path, MOST_FOUND_BYTES).map_err(|error| {
         Failure::new(fric_log::reason(&error)).in_file(path).advise("Check the path given with --for.")
     })
 }

@@ -14,7 +14,8 @@
 //! | `f_c` | | N | `B`, and what the stored friction itself, before or after the cycle, adds to the load |
 //!
 //! - **Jump**: `|ΔF_s| > max(J, 5 % of the smaller force + 0.1 N·(1 − c))`. For a sensor with lag or a nonlinear curve the limit is reduced by the
-//!   fraction of a change that it shows in one cycle; for a sensor that has not changed for `n` cycles it is `n` times as much. The jump persists
+//!   fraction of a change that it shows in one cycle; after `n` cycles without a new value it is `1 + min(n, 10)` times as much
+//!   ([`MOST_SILENT_CYCLES`]). The jump persists
 //!   until the jumps since then have cancelled or led back to the previous force, each to within `J` (with a sensor whose lag is undone, until that
 //!   is forgotten), or for [`LONGEST_LIE_S`] after the last jump: a level that lasts longer is taken for the load. A jump that is only partly taken
 //!   back persists for that time.
@@ -24,6 +25,7 @@
 //!   same load converge; with another exponent, by that law.
 
 use crate::dahl::dahl_step;
+use crate::effects::UNKNOWN;
 use crate::effects::presliding_shape::PreslidingShape;
 use crate::effects::sensor_lag::SensorLag;
 use crate::effects::sensor_nonlinearity::SensorNonlinearity;
@@ -55,6 +57,10 @@ const GREATEST_FED: f64 = 0.95;
 /// Duration of a jump that is not taken back, s; longer than the spikes and drop-outs of amplifiers and buses. Twice this value doubles the number of
 /// flagged cycles after a true load step; half of it takes shorter faults for the load.
 pub const LONGEST_LIE_S: f64 = 5.0;
+/// Cycles without a new sensor force, for it is the same or no number, that allow a greater change at once: a sensor that is ten times slower than the loop
+/// changes by as much as ten cycles do. At a load that rests, each of them hides a greater lie: half of it makes jumps of the loads of such a sensor, twice
+/// as much hides twice the lie. A slower sensor needs a `sensor_jump_n` of its own.
+pub const MOST_SILENT_CYCLES: f64 = 10.0;
 /// No force changes by this much, N; far below overflow.
 const NO_JUMP_N: f64 = 1e100;
 /// Ratio of friction to tension that represents a pulley whose friction amplifies itself without bound.
@@ -176,7 +182,7 @@ pub struct Shown<T: Scalar> {
     pub finite: T::Mask,
     /// Whether the length has jumped: an unreported time has passed, in which the force may have taken any value.
     pub paused: T::Mask,
-    /// Cycles since the previous change of the force.
+    /// Cycles since the previous change of the force, without this one.
     pub unchanged_cycles: T,
     /// Friction stored before the cycle, N.
     pub stored_n: T,
@@ -230,8 +236,11 @@ pub fn review_sensor<T: Scalar>(
     let stood = zero.lt(doubts.jump_cycles);
     let [force_n, last_n] = shown.sensor_force_n;
     let jump_n = greatest_change_n(shown.sensor_force_n, [jump_n, tolerated_n, tolerated_ratio]);
+    let silent_cycles = doubts.unseen_cycles + shown.unchanged_cycles;
+    let is_first = T::splat(UNKNOWN).le(silent_cycles);
+    let silent_cycles = T::select(is_first, silent_cycles, silent_cycles.min(T::splat(MOST_SILENT_CYCLES)));
     // A repeated wrong value ends in one cycle, however long it lasted.
-    let cycles = shown.elapsed_cycles + (doubts.unseen_cycles + shown.unchanged_cycles).keep(stood.not());
+    let cycles = shown.elapsed_cycles + silent_cycles.keep(stood.not());
     let change_n = force_n - last_n;
     let jumps = shown.finite.and(shown.paused.not()).and((jump_n * cycles).lt(change_n.abs()));
     let jumped_n = doubts.jumped_n + change_n.keep(jumps);

@@ -23,7 +23,7 @@ use crate::words::Words;
 /// | `OUT_OF_RANGE` | force or speed outside the cable's `validated` range | computed as usual |
 /// | `POSE_MISSING` | no pose, or not a usable one (not finite, or a quaternion far from norm 1), for a cable that needs it | last wrap and direction held; 90° until the first pose |
 /// | `POSE_UNREACHABLE` | the attachment lies inside the last pulley's circle | last wrap and direction held |
-/// | `SENSOR_JUMP` | sensor force changed by more than `sensor_jump_n` in a cycle (`σ·length_jump_m/20` unless the robot file states it, and never less than 5 % of the force + 0.1 N at the platform; `n` times as much where it had not changed for `n` cycles); until jumps have cancelled or led back to the force before, to within that limit, else for 5 s | computed as usual |
+/// | `SENSOR_JUMP` | sensor force changed by more than `sensor_jump_n` in a cycle (`σ·length_jump_m/20` unless the robot file states it, and never less than 5 % of the force + 0.1 N at the platform; `1 + n` times as much after `n` cycles without a new value, 11 times at most); until jumps have cancelled or led back to the force before, to within that limit, else for 5 s | computed as usual |
 /// | `UNSETTLED` | friction stored beyond what the present load bears, `Σμk_jT_j` and drag, by more than 25 % of the tension + 0.1 N; or a jump may have left more than half of 5 % + 0.1 N in it; until motion has forgotten it | computed as usual |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CableStatus(u32);

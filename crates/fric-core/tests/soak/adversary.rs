@@ -1,4 +1,5 @@
-//! An adversary at the force sensors: spikes of all sizes, 0.1 N to 10⁹ N up and down, over 1 to 1000 cycles, beside a twin without any.
+//! An adversary at the force sensors: spikes of all sizes, 0.1 N to 10⁹ N up and down, over 1 to 1000 cycles, also behind drop-outs, beside a twin without
+//! spikes. Loads rest now and then, and a third of the sensors has coarse steps, so that values repeat.
 //!
 //! | invariant | statement |
 //! |---|---|
@@ -8,7 +9,8 @@
 //! With `cable_elasticity` the play of the stretch may stay off by 3·`play_n`·`compliance_m_per_n`·σ, which is left out.
 //! What no signal shows is counted and left out, from its first cycle until, after its last, the force and what each pulley stores have come back to
 //! the twin's (both being slack is not coming back: the force is then 0 whatever is stored):
-//! - a spike of no more than [`greatest_change_n`], which is what the cable can do. The twin's own force changes by at most 0.4 of that in a cycle;
+//! - a spike of no more than [`greatest_change_n`], which is what the cable can do, or up to 11 times that after ten cycles without a new value. The twin's
+//!   own force changes by at most 0.6 of that in a cycle;
 //! - a spike that begins while an earlier jump persists and, to within that limit, cancels it or leads back to the force before it ([`Jumps`]);
 //! - what the twin has stored beyond its load during a spike: the twin itself is `UNSETTLED` then.
 
@@ -20,6 +22,8 @@ use super::motion::Motion;
 use super::robot::{Robot, magnitude, once_in};
 use crate::random::Random;
 
+/// Longest drop-out, of the twin too: in these cycles its load changes by less than it may after ten.
+const MOST_DROPPED: f64 = 18.0;
 /// Cycles of an episode.
 const CYCLES: u64 = 20_000;
 
@@ -73,8 +77,15 @@ struct Line {
     base_n: f64,
     force_n: f64,
     target_n: f64,
-    /// Cycles until the next spike begins, or this one ends.
+    /// The sensor's step, N; 0 without one.
+    step_n: f64,
+    /// Cycles for which the force stays.
+    rest_cycles: u64,
+    /// Cycles until the next spike begins, or this one ends, and those of a drop-out before the spike.
     cycles_left: u64,
+    dropped_cycles: u64,
+    /// Cycles in which the sensor has shown nothing new.
+    silent_cycles: f64,
     spike: Option<Spike>,
     jumps: Jumps,
     /// A spike that no signal shows stands, or has left something.
@@ -90,12 +101,12 @@ struct Jumps {
 }
 
 impl Jumps {
-    /// Enters the force of a cycle; whether it looks like the end of an earlier jump.
-    fn enter(&mut self, [last_n, force_n]: [f64; 2], limit_n: f64, cycle_s: f64) -> bool {
+    /// Enters the force of a cycle; whether it looks like the end of an earlier jump. The limits are those of a jump that persists, and without one.
+    fn enter(&mut self, [last_n, force_n]: [f64; 2], [limit_n, first_n]: [f64; 2], cycle_s: f64) -> bool {
         let persists = self.cycles_left > 0.0;
         self.cycles_left -= 1.0;
         let change_n = force_n - last_n;
-        if change_n.abs() <= limit_n {
+        if change_n.is_nan() || change_n.abs() <= if persists { limit_n } else { first_n } {
             return false;
         }
         if !persists {
@@ -121,6 +132,28 @@ enum Spike {
 }
 
 impl Line {
+    fn new(random: &mut Random, robot: &Robot, cable: &CableParams) -> Self {
+        let monitor = &robot.monitor;
+        let motion = Motion::new(random, robot.cycle_s, monitor.length_jump_m, monitor.length_noise_m);
+        let base_n = magnitude(random, 2.0, 50.0);
+        let cycles_left = 500 + random.below(1000);
+        let step_n = (0.2 * greatest_change_n(cable, monitor, 0.0)).min(0.02 * base_n);
+        Self {
+            motion,
+            base_n,
+            force_n: base_n,
+            target_n: base_n,
+            step_n: if once_in(random, 3) { step_n } else { 0.0 },
+            rest_cycles: 0,
+            cycles_left,
+            dropped_cycles: 0,
+            silent_cycles: 0.0,
+            spike: None,
+            jumps: Jumps::default(),
+            hidden: false,
+        }
+    }
+
     fn step(&mut self, random: &mut Random, cable: &CableParams, monitor: &MonitorOptions) -> CableInput {
         let mut input = self.motion.any(random);
         if once_in(random, 400) {
@@ -132,9 +165,17 @@ impl Line {
         }
         let most_n = 0.4 * greatest_change_n(cable, monitor, self.force_n.max(0.0));
         let wanted_n = 0.01 * (self.target_n - self.force_n) + 0.02 * self.base_n * random.range(-1.0, 1.0);
-        self.force_n += wanted_n.clamp(-most_n, most_n);
-        let noise_n = (0.1 * most_n).min(0.01);
-        input.sensor_force_n = self.force_n + random.range(-noise_n, noise_n);
+        if self.rest_cycles == 0 && once_in(random, 1000) {
+            self.rest_cycles = cycles(random, 500.0);
+        }
+        self.rest_cycles = self.rest_cycles.saturating_sub(1);
+        let noise_n = if self.step_n > 0.0 { 0.0 } else { (0.1 * most_n).min(0.01) };
+        let noise_n = random.range(-noise_n, noise_n);
+        if self.rest_cycles == 0 {
+            self.force_n += wanted_n.clamp(-most_n, most_n);
+        }
+        input.sensor_force_n =
+            if self.step_n > 0.0 { (self.force_n / self.step_n).round() * self.step_n } else { self.force_n + noise_n };
         input
     }
 
@@ -151,12 +192,11 @@ impl Line {
             if self.spike.take().is_none() {
                 let size_n = magnitude(random, 0.1, 1e9) * if once_in(random, 2) { 1.0 } else { -1.0 };
                 self.spike = Some(if once_in(random, 3) { Spike::Shows(size_n) } else { Spike::More(size_n) });
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1000")]
-                let cycles = magnitude(random, 1.0, 1000.0).round() as u64;
-                self.cycles_left = cycles;
+                self.cycles_left = cycles(random, 1000.0);
                 begins = Some(false);
             } else {
                 self.cycles_left = 50 + random.below(3000);
+                self.dropped_cycles = if once_in(random, 4) { cycles(random, MOST_DROPPED) } else { 0 };
             }
         }
         self.cycles_left -= 1;
@@ -166,12 +206,25 @@ impl Line {
                 Spike::Shows(value_n) => value_n,
             };
             if let Some(hidden) = &mut begins {
-                *hidden = (shown_n - last_n).abs() <= greatest_change_n(cable, monitor, shown_n.min(last_n));
+                let most_n = self.silence() * greatest_change_n(cable, monitor, shown_n.min(last_n));
+                *hidden = (shown_n - last_n).abs() <= most_n;
             }
             *force_n = shown_n;
         }
         begins
     }
+
+    /// How many times as much a force may change after the cycles without a new value.
+    fn silence(&self) -> f64 {
+        1.0 + self.silent_cycles.min(10.0)
+    }
+}
+
+/// A number of cycles, small ones as often as great ones.
+fn cycles(random: &mut Random, most: f64) -> u64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundreds")]
+    let cycles = magnitude(random, 1.0, most).round() as u64;
+    cycles
 }
 
 /// One robot and its twin.
@@ -179,15 +232,7 @@ pub fn episode(seed: u64) -> Result<Tally, String> {
     let mut random = Random::new(seed);
     let robot = Robot::new(&mut random);
     let monitor = robot.monitor;
-    let mut lines: Vec<Line> = (0..robot.cables.len())
-        .map(|_| {
-            let motion = Motion::new(&mut random, robot.cycle_s, monitor.length_jump_m, monitor.length_noise_m);
-            let base_n = magnitude(&mut random, 2.0, 50.0);
-            let cycles_left = 500 + random.below(1000);
-            let (jumps, spike) = (Jumps::default(), None);
-            Line { motion, base_n, force_n: base_n, target_n: base_n, cycles_left, spike, jumps, hidden: false }
-        })
-        .collect();
+    let mut lines: Vec<Line> = robot.cables.iter().map(|cable| Line::new(&mut random, &robot, cable)).collect();
     let (mut twin, mut spoilt) = (robot.compensator(), robot.compensator());
     let cable = |index: usize| &robot.cables[index];
     let mut tally = Tally::default();
@@ -201,19 +246,30 @@ pub fn episode(seed: u64) -> Result<Tally, String> {
         for ((place, line), cable) in good.cables.iter_mut().zip(&mut lines).zip(&robot.cables) {
             *place = line.step(&mut random, cable, &monitor);
         }
+        for (place, line) in good.cables.iter_mut().zip(&lines) {
+            // In the cycles before the next spike.
+            if line.spike.is_none() && (1..=line.dropped_cycles).contains(&line.cycles_left) {
+                place.sensor_force_n = f64::NAN;
+            }
+        }
         let mut bad = good;
         for (index, line) in lines.iter_mut().enumerate() {
             let force_n = &mut bad.cables[index].sensor_force_n;
             let begins = line.spoil(&mut random, (shown_n[index], force_n), cable(index), &monitor);
             let limit_n = greatest_change_n(cable(index), &monitor, force_n.min(shown_n[index]));
-            let looks_like_an_end = line.jumps.enter([shown_n[index], *force_n], limit_n, robot.cycle_s);
+            let looks_like_an_end =
+                line.jumps.enter([shown_n[index], *force_n], [limit_n, line.silence() * limit_n], robot.cycle_s);
             if let Some(is_small) = begins {
                 let hidden = is_small || looks_like_an_end;
                 tally.spikes += 1;
                 tally.hidden += u64::from(hidden);
                 line.hidden |= hidden;
             }
-            shown_n[index] = *force_n;
+            let is_new = force_n.is_finite() && (*force_n - shown_n[index]).abs() > 0.0;
+            line.silent_cycles = if is_new { 0.0 } else { line.silent_cycles + 1.0 };
+            if force_n.is_finite() {
+                shown_n[index] = *force_n;
+            }
         }
         let (expected, output) = (twin.step(&good), spoilt.step(&bad));
         for (index, line) in lines.iter_mut().enumerate() {
@@ -227,7 +283,8 @@ pub fn episode(seed: u64) -> Result<Tally, String> {
             let unsettled = has(CableStatus::UNSETTLED);
             let is_silent = is_off && one.status.is_ok();
             // What the twin itself does not vouch for is no measure, until the two have met again.
-            line.hidden |= is_silent && unsettled;
+            let is_held = has(CableStatus::SENSOR_FROZEN) || has(CableStatus::SENSOR_NOT_FINITE);
+            line.hidden |= (unsettled && line.spike.is_some()) || is_silent && (unsettled || is_held);
             tally.left_out += u64::from(is_off && line.hidden);
             if is_silent && !line.hidden {
                 return Err(format!(

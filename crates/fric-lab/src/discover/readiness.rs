@@ -80,9 +80,7 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
 
 /// Returns what is missing if this is the duration of the samples with a reference, s.
 pub fn too_short(samples_s: f64) -> Option<Lack> {
-    let cause = || {
-        format!("{:.1} s of samples with a reference are too few, {LEAST_S} s are needed", below(samples_s))
-    };
+    let cause = || format!("{:.1} s of samples with a reference are too few, {LEAST_S} s are needed", below(samples_s));
     (samples_s < LEAST_S).then(|| Lack::new(cause(), LONGER))
 }
 

@@ -95,7 +95,7 @@ impl Order {
     }
 
     /// Returns the other cable with whose reference a sensor goes.
-    fn partner(&self, sensor: usize, pairs: &[Pair]) -> Option<usize> {
+    fn partner(sensor: usize, pairs: &[Pair]) -> Option<usize> {
         let own = pairs.get(sensor)?;
         let variance_n2 = pairs.iter().find_map(Pair::rest)?[0];
         let own_n2 = own.rest().map_or(variance_n2, |[_, rest_n2]| rest_n2);
@@ -109,7 +109,7 @@ impl Order {
     fn exchanged(&self) -> Vec<(usize, usize)> {
         let rows = self.pairs.chunks_exact(self.cable_count).enumerate();
         let mut exchanged: Vec<(usize, usize)> =
-            rows.filter_map(|(sensor, pairs)| Some((sensor, self.partner(sensor, pairs)?))).collect();
+            rows.filter_map(|(sensor, pairs)| Some((sensor, Self::partner(sensor, pairs)?))).collect();
         // What remains is a ring, or several: each has a partner, and is the partner of one.
         loop {
             let all = exchanged.clone();

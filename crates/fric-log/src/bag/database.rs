@@ -7,9 +7,12 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, Row};
 use tempfile::{NamedTempFile, TempDir};
 
+/// Greatest size of a message, bytes.
+const MOST_BYTES: i32 = 128 << 20;
 /// Number of times read at once.
 const PAGE_LEN: u32 = 4096;
 /// Maximum number of skips over unreadable rows, each twice as long as the one before.
@@ -93,6 +96,8 @@ impl Database {
             Some(TemporaryCopy::Decompressed(file)) => connect(file.path()),
             Some(TemporaryCopy::WithWrites(folder)) => Connection::open(folder.path().join(DATABASE)),
         }?;
+        // A value that the file does not hold but lets SQLite compute may have any size.
+        connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, MOST_BYTES)?;
         // A file that is shorter than its header states is read as far as possible.
         connection.pragma_update(None, "writable_schema", true)?;
         let mut database = Self {

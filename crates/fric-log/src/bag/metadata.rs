@@ -1,9 +1,10 @@
 //! `metadata.yaml`: the files of a bag and their compression.
 
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::{fs, io};
 
+use fric_core::text_file;
 use saphyr::{LoadableYamlNode, Yaml};
 
 /// The file that the recorder writes when it ends.
@@ -24,10 +25,7 @@ pub(super) struct Files {
 impl Files {
     /// Finds the files of the bag in a folder: those that its metadata names, else those with a matching extension.
     pub fn find(folder: &Path) -> io::Result<Self> {
-        let listed = match fs::read_to_string(folder.join(METADATA)) {
-            Ok(text) => named(&text),
-            Err(_) => None,
-        };
+        let listed = text_file::read(&folder.join(METADATA)).ok().and_then(|text| named(&text));
         let mut there: Vec<PathBuf> = fs::read_dir(folder)?.filter_map(|entry| Some(entry.ok()?.path())).collect();
         there.retain(|path| is_of_bag(path));
         there.sort();
@@ -57,10 +55,12 @@ impl Files {
     }
 }
 
-/// Returns the file with a name; it may have been compressed or decompressed since, or be beside the metadata under its base name.
+/// Returns the file with a name; it may have been compressed or decompressed since, or be beside the metadata under its base name. Nothing outside the
+/// folder is a file of the bag.
 fn at(folder: &Path, name: &str, there: &[PathBuf]) -> Option<PathBuf> {
     let path = folder.join(name);
-    if path.is_file() {
+    let is_inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+    if is_inside && path.is_file() {
         return Some(path);
     }
     let last = Path::new(name).file_name()?.to_str()?;
@@ -77,8 +77,30 @@ fn is_of_bag(path: &Path) -> bool {
 
 /// Returns the files that the metadata names.
 fn named(text: &str) -> Option<Vec<String>> {
+    if is_deep(text) {
+        return None;
+    }
     let documents = Yaml::load_from_str(text).ok()?;
     let bag = documents.first()?.as_mapping_get("rosbag2_bagfile_information")?;
     let paths = bag.as_mapping_get("relative_file_paths")?.as_sequence()?;
     Some(paths.iter().filter_map(|path| path.as_str().map(ToOwned::to_owned)).collect())
+}
+
+/// Deepest nesting within a line, and of brackets; the recorder's has some five levels. The parser calls itself for each.
+const DEEPEST: usize = 64;
+
+/// Whether a text nests so deeply that the parser would run out of stack.
+fn is_deep(text: &str) -> bool {
+    let marks = |line: &str| line.split_whitespace().take_while(|word| ["-", "?"].contains(word)).count();
+    let mut depth = 0_usize;
+    let mut deepest = 0;
+    for character in text.chars() {
+        match character {
+            '[' | '{' => depth += 1,
+            ']' | '}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(depth);
+    }
+    deepest > DEEPEST || text.lines().any(|line| marks(line) > DEEPEST)
 }

@@ -128,6 +128,7 @@ impl Bag {
     fn new(mut databases: Vec<Database>) -> Result<Self, RecordingError> {
         databases.sort_by_key(Database::first_nanos);
         let mut channels: Vec<Arc<Channel>> = Vec::new();
+        let mut of_name: HashMap<String, Vec<usize>> = HashMap::new();
         let mut by_topic = Vec::new();
         for database in &databases {
             let topics = database.topics().map_err(|error| unreadable(&database.path, &error))?;
@@ -135,10 +136,15 @@ impl Bag {
             for topic in topics {
                 let number = topic.id;
                 let channel = channel(topic, channels.len());
-                let is_same = |known: &Arc<Channel>| Channel { id: known.id, ..channel.clone() } == **known;
-                let id = channels.iter().position(is_same).unwrap_or_else(|| {
+                let namesakes = of_name.entry(channel.topic.clone()).or_default();
+                let is_same = |id: &&usize| {
+                    channels.get(**id).is_some_and(|known| Channel { id: known.id, ..channel.clone() } == **known)
+                };
+                let known = namesakes.iter().find(is_same).copied();
+                let id = known.unwrap_or_else(|| {
+                    namesakes.push(channel.id);
                     channels.push(Arc::new(channel.clone()));
-                    channels.len() - 1
+                    channel.id
                 });
                 of_file.insert(number, id);
             }

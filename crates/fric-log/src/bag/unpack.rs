@@ -51,10 +51,16 @@ impl Unpacker {
     }
 }
 
+/// Greatest size to which a file is decompressed, bytes: this, or as many times its own size as no recording is compressed.
+const UNPACKED_BYTES: u64 = 256 << 20;
+const MOST_COMPRESSED: u64 = 1000;
+
 /// Decompresses a whole file into a temporary one. Also returns a remark if some of it is missing.
 pub(super) fn unpacked(path: &Path, file: File) -> io::Result<(NamedTempFile, Option<String>)> {
     let mut target = NamedTempFile::new()?;
-    let mut decoder = zstd::stream::read::Decoder::new(BufReader::new(file))?;
+    let most_bytes = UNPACKED_BYTES.max(MOST_COMPRESSED.saturating_mul(file.metadata()?.len()));
+    let decoder = zstd::stream::read::Decoder::new(BufReader::new(file))?;
+    let mut decoder = io::Read::take(decoder, most_bytes + 1);
     let copied = {
         let mut writer = BufWriter::new(target.as_file_mut());
         let copied = io::copy(&mut decoder, &mut writer);
@@ -62,6 +68,10 @@ pub(super) fn unpacked(path: &Path, file: File) -> io::Result<(NamedTempFile, Op
         copied
     };
     let remark = match copied {
+        Ok(bytes) if bytes > most_bytes => {
+            let text = format!("it unpacks to more than {} MiB", most_bytes >> 20);
+            return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
+        }
         Ok(_) => None,
         Err(error) if error.raw_os_error().is_some() => return Err(error),
         Err(_) => Some(format!("`{}` is damaged or cut off: what could be decompressed is read", path.display())),

@@ -12,6 +12,7 @@ mod advice {
     pub const DISK: &str = "check the disk, or copy the file and try again";
     pub const UTF8: &str = "save it as CSV in UTF-8";
     pub const HEADER: &str = "put a line with the names of the columns in front";
+    pub const COLUMNS: &str = "leave out the columns that are no signals of the robot";
     pub const NAME: &str = "name the right columns under `[log.columns]` in the robot file, such as \
                             \"cable1.force_n\" = { column = \"Load cell 1 [kg]\", factor = 9.80665 }";
     pub const RENAME: &str = "take one of the two out, or give it another name";
@@ -52,6 +53,22 @@ pub enum CsvError {
         path: PathBuf,
         /// The line, from 1.
         line: u64,
+    },
+    /// The names of the columns are longer than what is read of them.
+    #[error("`{}`: the line with the names of the columns has more than {} KiB; {}", path.display(), most_bytes >> 10, advice::COLUMNS)]
+    LongHeader {
+        /// The file.
+        path: PathBuf,
+        /// What is read of the beginning, bytes.
+        most_bytes: u64,
+    },
+    /// A line is longer than one of signals.
+    #[error("`{}` has a line of more than {} MiB; {}", path.display(), most_bytes >> 20, advice::COLUMNS)]
+    LongLine {
+        /// The file.
+        path: PathBuf,
+        /// The greatest length of a line, bytes.
+        most_bytes: usize,
     },
     /// A required signal has no column.
     #[error(
@@ -164,6 +181,7 @@ impl CsvError {
             Self::Cell { column, text, .. } => cell_advice(column, text),
             Self::Time { unit, .. } => time_advice(*unit),
             Self::NoRow { .. } | Self::NoNumber { .. } => advice::RECORD,
+            Self::LongHeader { .. } | Self::LongLine { .. } => advice::COLUMNS,
             Self::NoUsableRow { .. } => advice::ROWS,
         }
     }

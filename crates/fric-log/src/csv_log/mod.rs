@@ -34,6 +34,8 @@ const BEGINNING_BYTES: u64 = 1 << 18;
 const GREATEST_TIME_S: f64 = 4.1e9;
 /// Power of ten from seconds to nanoseconds. A date or a time of day is in seconds: a factor does not go with it.
 const SECONDS_EXPONENT: u32 = 9;
+/// Greatest length of a line, bytes: thousands of signals.
+const LINE_BYTES: usize = 4 << 20;
 /// Number of bytes that are searched for the last line end.
 const ENDING_BYTES: u64 = 1 << 20;
 
@@ -70,8 +72,25 @@ struct CsvFile {
 enum State {
     /// Nothing has been read yet.
     Open,
-    Reading(Box<(Columns, Reader<BufReader<Take<File>>>)>),
+    Reading(Box<(Columns, Reader<BufReader<Lines>>)>),
     Ended,
+}
+
+/// Rows whose lines are of bounded length, because each is held in memory.
+#[derive(Debug)]
+struct Lines {
+    rows: Take<File>,
+    /// Bytes since the last line end.
+    line_bytes: usize,
+}
+
+impl Read for Lines {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.rows.read(buffer)?;
+        let end = buffer.get(..count).and_then(|bytes| bytes.iter().rposition(|byte| *byte == b'\n'));
+        self.line_bytes = end.map_or(self.line_bytes + count, |end| count - end);
+        if self.line_bytes > LINE_BYTES { Err(io::ErrorKind::InvalidData.into()) } else { Ok(count) }
+    }
 }
 
 /// A row, in the robot's order.
@@ -109,6 +128,9 @@ impl CsvLog {
         };
         if form.lacks_header {
             return Err(CsvError::NoHeader { path: path.to_owned(), line: form.first_line });
+        }
+        if len > BEGINNING_BYTES && form.rows_at >= BEGINNING_BYTES {
+            return Err(CsvError::LongHeader { path: path.to_owned(), most_bytes: BEGINNING_BYTES });
         }
         let end = last_line_end(&mut file, len).map_err(refused)?.max(form.rows_at);
         let cut = (end < len).then(|| {
@@ -250,7 +272,7 @@ impl CsvLog {
             .delimiter(form.separator)
             .comment(Some(COMMENT))
             .trim(Trim::All)
-            .from_reader(BufReader::new(rows.take(end.saturating_sub(form.rows_at))));
+            .from_reader(BufReader::new(Lines { rows: rows.take(end.saturating_sub(form.rows_at)), line_bytes: 0 }));
         self.state = State::Reading(Box::new((columns, reader)));
         Ok(())
     }
@@ -263,7 +285,13 @@ impl CsvLog {
         let before: u64 = self.files.iter().take(self.current).map(|file| file.len).sum();
         loop {
             let has_row = reader.read_byte_record(&mut self.record).map_err(|error| {
-                let source = io::Error::other(error.to_string());
+                let source = match error.into_kind() {
+                    csv::ErrorKind::Io(source) => source,
+                    other => io::Error::other(format!("{other:?}")),
+                };
+                if source.kind() == io::ErrorKind::InvalidData {
+                    return CsvError::LongLine { path: path.clone(), most_bytes: LINE_BYTES };
+                }
                 CsvError::Read { path: path.clone(), source }
             })?;
             self.bytes_read = before + form.rows_at + reader.position().byte();

@@ -78,8 +78,13 @@ struct FileTable {
     dense: Vec<Option<u32>>,
 }
 
+/// Size of all definitions of a recording together, bytes; those of a robot's log have some hundred kilobytes. What is beyond it counts as broken.
+const MOST_BYTES: usize = 32 << 20;
+
 /// All channels of a recording.
 pub(super) struct ChannelTable {
+    /// Size of the definitions so far, bytes.
+    bytes: usize,
     channels: Vec<Arc<Channel>>,
     by_topic: HashMap<String, Vec<u32>>,
     files: Vec<FileTable>,
@@ -88,6 +93,7 @@ pub(super) struct ChannelTable {
 impl ChannelTable {
     pub(super) fn new(file_count: usize) -> Self {
         Self {
+            bytes: 0,
             channels: Vec::new(),
             by_topic: HashMap::new(),
             files: std::iter::repeat_with(FileTable::default).take(file_count).collect(),
@@ -127,6 +133,13 @@ impl ChannelTable {
         }
     }
 
+    /// Whether there is room for a definition, which takes it.
+    fn fits(bytes: &mut usize, body: &[u8]) -> bool {
+        let fits = *bytes + body.len() <= MOST_BYTES;
+        *bytes += if fits { body.len() } else { 0 };
+        fits
+    }
+
     fn define_schema(&mut self, file: u32, body: &[u8], source: Source, rejected: &mut Vec<u16>) -> Received {
         let Some(fields) = SchemaFields::parse(body).filter(|fields| fields.id != 0) else {
             return Received::Broken;
@@ -151,6 +164,9 @@ impl ChannelTable {
                 rejected.extend(users.map(|(id, _)| *id));
                 return Received::Conflict;
             }
+        }
+        if !Self::fits(&mut self.bytes, body) {
+            return Received::Broken;
         }
         let schema = Arc::new(Schema {
             name: fields.name.to_owned(),
@@ -199,6 +215,9 @@ impl ChannelTable {
                 rejected.push(fields.id);
                 return Received::Conflict;
             }
+        }
+        if !Self::fits(&mut self.bytes, body) {
+            return Received::Broken;
         }
         table
             .channels

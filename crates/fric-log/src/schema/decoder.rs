@@ -18,6 +18,10 @@ pub struct Decoder {
     values: Values,
 }
 
+/// Greatest size of a message that is read, bytes: thousands of times that of a robot's signals. What is read of JSON takes many times its size.
+const MOST_BYTES: usize = 16 << 20;
+const MOST_JSON_BYTES: usize = 4 << 20;
+
 #[derive(Debug, Clone)]
 enum Reader {
     Cdr(Box<CdrReader>),
@@ -31,6 +35,10 @@ impl Decoder {
     /// # Errors
     /// Returns a [`DecodeError`] if the bytes do not agree with the schema. The next message can still be read.
     pub fn read(&mut self, data: &[u8]) -> Result<&Values, DecodeError> {
+        let most_bytes = if matches!(self.reader, Reader::Json(_)) { MOST_JSON_BYTES } else { MOST_BYTES };
+        if data.len() > most_bytes {
+            return Err(DecodeError::Large { bytes: data.len(), most_bytes });
+        }
         match &mut self.reader {
             Reader::Cdr(reader) => reader.read(data, &mut self.values)?,
             Reader::Json(wanted) => json::read(data, wanted, &mut self.values)?,

@@ -182,6 +182,14 @@ pub enum DecodeError {
         /// Position of the text.
         offset: usize,
     },
+    /// The message is larger than any of signals.
+    #[error("the message has {bytes} bytes, where signals have {most_bytes} at most")]
+    Large {
+        /// Its size.
+        bytes: usize,
+        /// The greatest size that is read.
+        most_bytes: usize,
+    },
     /// The message is not JSON.
     #[error("the message is not valid JSON: {cause}")]
     Json {

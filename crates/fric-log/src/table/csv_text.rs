@@ -1,7 +1,7 @@
 //! Tables as text with a header, in any [`Form`].
 
-use std::fs;
 use std::path::Path;
+use std::{fs, io};
 
 use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 
@@ -11,11 +11,23 @@ use crate::csv_form::{COMMENT, Decimals, Form};
 /// Number of bytes that contain the header and enough rows to tell where the table begins.
 const BEGINNING_BYTES: usize = 1 << 18;
 
+/// Greatest size of a table, bytes: an hour of a manipulator at 100 Hz.
+const MOST_BYTES: u64 = 256 << 20;
+
+/// Reads a regular file of at most [`MOST_BYTES`].
+fn content(path: &Path) -> io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    if metadata.is_file() && metadata.len() > MOST_BYTES {
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("it has more than {} MiB", MOST_BYTES >> 20)));
+    }
+    fs::read(path)
+}
+
 /// Reads all columns. Blanks around cells and a byte order mark are ignored.
 ///
 /// A last row without a line end is left out, with a warning, even if it has all its cells, because its last number may be incomplete.
 pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
-    let text = fs::read(path).map_err(|source| TableError::File { path: path.to_owned(), source })?;
+    let text = content(path).map_err(|source| TableError::File { path: path.to_owned(), source })?;
     // UTF-16, or no text at all.
     if text.contains(&0) {
         return Err(TableError::NotText { path: path.to_owned(), line: 1 });

@@ -173,17 +173,57 @@ fn a_file_that_is_cut_off_is_read_as_far_as_it_goes() {
     }
 }
 
+/// A file of zeros packs a hundred thousand times.
+#[test]
+fn a_file_that_unpacks_without_end_is_refused() {
+    let folder = Folder::new();
+    let mut packed = zstd::stream::write::Encoder::new(Vec::new(), 3).unwrap();
+    std::io::copy(&mut std::io::Read::take(std::io::repeat(0), 300 << 20), &mut packed).unwrap();
+    fs::write(folder.path("bag_0.db3.zstd"), packed.finish().unwrap()).unwrap();
+    let error = Log::open(&[folder.path(".")]).unwrap_err();
+    assert!(fric_log::in_full(&error).contains("unpacks to more than 256 MiB"), "{}", fric_log::in_full(&error));
+}
+
+/// What a bag says of itself neither exhausts the stack nor leads out of its folder, and is not waited for.
+#[test]
+fn metadata_that_mislead_are_not_followed() {
+    let (folder, secret) = (Folder::new(), Folder::new());
+    write(&folder.path("run.db3"), every_ms(0, 50), plain, true);
+    write(&secret.path("secret.db3"), every_ms(0, 50), plain, true);
+    let outside = secret.path("secret.db3").display().to_string();
+    let up = format!("../{}/secret.db3", secret.path(".").canonicalize().unwrap().file_name().unwrap().display());
+    folder.metadata(&["run.db3", &outside, &up]);
+    let (read, warnings) = folder.read();
+    assert_eq!(read, times(0, 50).0);
+    assert!(
+        warnings.len() == 2 && warnings.iter().all(|text| text.contains("its messages are missing")),
+        "{warnings:?}"
+    );
+    for text in
+        ["- ".repeat(30_000), "[".repeat(30_000), "{a: ".repeat(30_000), "? ".repeat(30_000), "[\n".repeat(30_000)]
+    {
+        fs::write(folder.path("metadata.yaml"), text).unwrap();
+        assert_eq!(folder.read().0, times(0, 50).0);
+    }
+    fs::remove_file(folder.path("metadata.yaml")).unwrap();
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("/dev/zero", folder.path("metadata.yaml")).unwrap();
+        assert_eq!(folder.read().0, times(0, 50).0);
+    }
+}
+
 /// A recorder that was killed leaves its last messages beside the database. Nothing is written there.
 #[test]
 fn writes_beside_the_database_are_read_and_left_as_they_are() {
     let (recorded, killed) = (Folder::new(), Folder::new());
     let path = recorded.path("run.db3");
     write(&path, every_ms(0, 100), plain, true);
-    let recorder = Connection::open(&path).unwrap();
-    recorder.pragma_update(None, "journal_mode", "WAL").unwrap();
+    let writer = Connection::open(&path).unwrap();
+    writer.pragma_update(None, "journal_mode", "WAL").unwrap();
     for stamp in every_ms(100, 200) {
         let row = (stamp, message(stamp));
-        recorder.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (7, ?1, ?2)", row).unwrap();
+        writer.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (7, ?1, ?2)", row).unwrap();
     }
     let names = ["run.db3", "run.db3-wal"];
     for name in names {

@@ -252,6 +252,15 @@ fn values_that_look_like_another_unit_are_warned_of() {
     assert!(read(three).warnings.is_empty(), "a slack cable");
 }
 
+#[test]
+fn lines_without_end_are_refused() {
+    let names: String = (0..60_000).map(|column| format!(",c{column}")).collect();
+    let wide = format!("time_s{names}\n{}\n", vec!["1"; 60_001].join(","));
+    read(&wide).fails(&["names of the columns has more than 256 KiB"]);
+    let row = format!("time_s,a.force_n,a.length_m\n0,1,2\n0.001,1,2\n0.002,{}1\n", "1,".repeat(3 << 20));
+    read(&row).fails(&["a line of more than 4 MiB"]);
+}
+
 /// A file system leaves zeros where the power failed.
 #[test]
 fn zeros_behind_the_rows_are_no_table() {

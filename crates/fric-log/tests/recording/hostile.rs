@@ -112,6 +112,33 @@ fn strings_that_claim_gigabytes_are_not_believed() {
     }
 }
 
+/// A schema's record: number, name, encoding and text.
+fn schema(id: u16, text: &[u8]) -> Vec<u8> {
+    let mut body = id.to_le_bytes().to_vec();
+    for part in [b"type".as_slice(), b"ros2msg", text] {
+        body.extend(u32::try_from(part.len()).unwrap().to_le_bytes());
+        body.extend(part);
+    }
+    record(op::SCHEMA, &body)
+}
+
+/// Chunks of some hundred bytes unpack to definitions of any size; what is kept of them is bounded.
+#[test]
+fn definitions_beyond_any_robots_are_left_out() {
+    let mut chunks = vec![channel(1, "/a")];
+    let text = vec![b'#'; 10 << 20];
+    for id in 1..=10 {
+        let content = schema(id, &text);
+        let packed = zstd::encode_all(&content[..], 1).unwrap();
+        chunks.push(chunk("zstd", &packed, content.len() as u64, 0, (50, 50)));
+    }
+    chunks.push(message(1, &sample("/a", 3, 60, 50)));
+    let mut recording = open(&file_of(&chunks)).unwrap();
+    assert_eq!(sequences(&read_all(&mut recording)), [3]);
+    // Three of them are within 32 MiB.
+    assert_eq!(kinds(&recording), [DamageKind::Definition; 7]);
+}
+
 #[test]
 fn records_that_break_off_inside_a_chunk_end_it() {
     let mut content = plain(&[sample("/a", 5, 50, 50), sample("/a", 6, 60, 50)]);

@@ -13,6 +13,7 @@ pub mod preview;
 mod run;
 mod series;
 
+use fric_core::text_file::harmless;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::provenance::Provenance;
@@ -64,7 +65,7 @@ impl Page<'_> {
             Tone::Bad => "bad",
         };
         let plots = plots.into_json(&cables);
-        html! {
+        let page = html! {
             (DOCTYPE)
             html lang="en" {
                 head {
@@ -91,8 +92,8 @@ impl Page<'_> {
                     }
                 }
             }
-        }
-        .into_string()
+        };
+        harmless(&page.into_string()).into_owned()
     }
 }
 
