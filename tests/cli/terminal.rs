@@ -69,7 +69,8 @@ fn each_output_is_told_after_the_table() {
     let told = run.stdout.split_once("\n\nwrote ").unwrap().1;
     assert_eq!(
         told,
-        "o.mcap: forces, friction, wrench and status\nwrote r.html: the report\nwrote j.json: the result as JSON\n"
+        "o.mcap: forces, friction, wrench and status\nwrote r.html: the report\nwrote j.json: the result as JSON\n\n\
+         What to do:\n- See what the model lacks: fric-cli discover with the same log and model.\n"
     );
 }
 

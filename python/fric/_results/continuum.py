@@ -246,14 +246,16 @@ class TendonFit(Result):
     after: dict[str, float]
     """Errors of the fitted manipulator, with the same keys."""
     is_misfit: bool
-    """Whether more of the gratings' tensions is left than noise and errors of their lines, so that something else is missing or wrong."""
+    """Whether more is left than noise and errors of the gratings' lines, so that something else is missing or wrong."""
+    misfit_of: list[str]
+    """Signals of which more is left: "gratings", "markers"."""
     common_steps: list[list[dict[str, Any]]]
     """Steps of all gratings together that were taken off, for each run, as dicts: kind, time_s, step_nm."""
 
     @classmethod
     def _of(cls, shown: Shown, manipulator: Manipulator) -> TendonFit:
         found = json.loads(shown.json)
-        keys = ("parameters", "standard_errors", "given", "undetermined", "before", "after", "is_misfit", "common_steps")
+        keys = ("parameters", "standard_errors", "given", "undetermined", "before", "after", "is_misfit", "misfit_of", "common_steps")
         return cls(shown, manipulator, **{key: found[key] for key in keys})
 
 

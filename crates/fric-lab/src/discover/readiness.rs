@@ -114,9 +114,10 @@ pub fn lack_of_samples(counts: &SampleCounts, interval_s: f64) -> Option<Lack> {
     Some(Lack::new(cause, advice))
 }
 
-/// Rounds down to a tenth, so that too few seconds look like it.
+/// Rounds to a tenth, down where too few seconds would not look like it.
 fn below(seconds: f64) -> f64 {
-    (seconds * 10.0).floor() / 10.0
+    let tenths = seconds * 10.0;
+    if tenths.round() < LEAST_S * 10.0 { tenths.round() / 10.0 } else { tenths.floor() / 10.0 }
 }
 
 /// Returns the reason if the noise cannot be estimated.

@@ -11,9 +11,9 @@ use super::case::{Case, Fit};
 const LAGS: usize = 4;
 /// Number of standard errors beyond which a mean product is not noise: one in a thousand.
 const STANDARD_ERRORS: f64 = 3.0;
-/// Negligible error in the verdict, as a fraction of the greatest tension. It is twice the difference between Dahl's contacts and holes that stick
+/// Negligible error in the verdict, as a fraction of the greatest tension, or of the length for a place. It is twice the difference between Dahl's contacts and holes that stick
 /// and slip in runs with both directions, 0.4 mN of 1.7 N.
-const PRACTICAL_RATIO: f64 = 0.0005;
+pub const PRACTICAL_RATIO: f64 = 0.0005;
 
 /// The common part of consecutive samples.
 #[derive(Clone, Copy, Debug, Default)]
@@ -68,19 +68,18 @@ fn common(fit: &Fit) -> Common {
 /// with half as much again 2.4.
 const MISFIT: f64 = 2.0;
 
-/// Whether series of tensions, N, one a grating, have more in common than noise, the error of the model, holes that are not alike, and the error of common
-/// steps that were taken off, for this greatest tension.
-pub fn is_misfit(series: &[Vec<f64>], greatest_tension_n: f64, step_count: usize) -> bool {
+/// Whether consecutive values of these series have more in common than noise, the error of the model, holes that are not alike, and the error of steps that
+/// were taken off all of them.
+pub fn is_misfit(series: &[Vec<f64>], model_error: f64, step_count: usize) -> bool {
     let mut common = Common::default();
     for series in series {
         common.add(series);
     }
-    // The size of a step is known from the change between two samples of all gratings.
+    // The size of a step is known from the change between two samples of all series, but for their white noise.
+    let noise = (common.squares / common.count.max(1.0) - common.rms().powi(2)).max(0.0).sqrt();
     #[expect(clippy::cast_precision_loss, reason = "small counts")]
-    let of_steps =
-        (2.0 * step_count as f64 / series.len().max(1) as f64).sqrt() * (common.squares / common.count.max(1.0)).sqrt();
-    let model_n = PRACTICAL_RATIO * greatest_tension_n;
-    common.rms() > MISFIT * common.chance().hypot(model_n).hypot(of_steps)
+    let of_steps = noise * (2.0 * step_count as f64 / series.len().max(1) as f64).sqrt();
+    common.rms() > MISFIT * common.chance().hypot(model_error).hypot(of_steps)
 }
 
 /// Returns the root mean square of a residual above the noise over training and held-out samples, N. Using both balances what a fit removes from one

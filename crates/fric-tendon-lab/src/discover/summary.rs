@@ -9,6 +9,10 @@ use fric_lab::text::{quantity, table, wrapped};
 
 use super::result::{Manipulator, TendonMarkers};
 
+/// What a run without markers does not tell.
+pub const WITHOUT_MARKERS: &str = "the run has none that can be used, so that the bending is not checked: a wrong stiffness, offset or load stays hidden, and friction named at a hole may \
+                                   stand for a softer or stiffer segment.";
+
 /// Returns the full summary.
 pub fn describe(result: &DiscoverResult<Manipulator>) -> String {
     let number =
@@ -58,10 +62,9 @@ pub fn describe(result: &DiscoverResult<Manipulator>) -> String {
         }
     }
     for tendon in &result.cables {
-        if let Some(markers) = &tendon.markers {
-            text += "\n";
-            text += &wrapped("markers: ", &markers.sentence());
-        }
+        let markers = tendon.markers.as_ref().map_or_else(|| WITHOUT_MARKERS.to_owned(), TendonMarkers::sentence);
+        text += "\n";
+        text += &wrapped("markers: ", &markers);
         for tried in &tendon.tried {
             text += "\n";
             text += &wrapped("not named: ", &tried_in_words(tried));

@@ -12,7 +12,7 @@ use super::quantity::Quantity;
 use super::result::Undetermined;
 use super::unknown::Unknown;
 use crate::discover::markers::noise_m;
-use crate::discover::noise::is_misfit;
+use crate::discover::noise::{PRACTICAL_RATIO, is_misfit};
 use crate::discover::worse::{Worse, grown};
 use crate::error::ContinuumError;
 use crate::run::Run;
@@ -35,8 +35,8 @@ pub struct Attempt {
     pub undetermined: Vec<Undetermined>,
     /// What it makes worse.
     pub worse: Option<MadeWorse>,
-    /// Whether it leaves more of the gratings' tensions than noise, unlike holes and errors of the lines.
-    pub is_misfit: bool,
+    /// What it leaves more of than noise, unlike holes and errors of the lines.
+    pub misfit: Misfit,
 }
 
 impl Attempt {
@@ -94,10 +94,17 @@ impl Attempt {
             as_written.lines = runs.start(&[]).lines;
         }
         let after = runs.evaluate(&as_written, Some(&solution.evaluation)).ok_or(ContinuumError::NotIdentified)?;
-        let is_misfit = is_misfit(&gratings_left_n(&solution.evaluation), runs.greatest_tension_n, step_count);
+        let misfit = Misfit {
+            gratings: is_misfit(
+                &gratings_left_n(&solution.evaluation),
+                PRACTICAL_RATIO * runs.greatest_tension_n,
+                step_count,
+            ),
+            markers: is_misfit(&markers_left_m(&solution.evaluation), PRACTICAL_RATIO * runs.given.length_m(), 0),
+        };
         Ok(Self {
-            worse: MadeWorse::of(&before, &after, is_misfit),
-            is_misfit,
+            worse: MadeWorse::of(&before, &after, misfit.any()),
+            misfit,
             given: runs.given,
             before,
             after,
@@ -110,6 +117,21 @@ impl Attempt {
     /// Returns the numbers that were found.
     pub fn unknowns(&self) -> Vec<Unknown> {
         self.solution.state.unknowns.iter().map(|(unknown, _)| *unknown).collect()
+    }
+}
+
+/// The signals of which a search leaves more than noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Misfit {
+    /// The tensions at the gratings.
+    pub gratings: bool,
+    /// The distances of the disks from their markers.
+    pub markers: bool,
+}
+
+impl Misfit {
+    pub fn any(self) -> bool {
+        self.gratings || self.markers
     }
 }
 
@@ -128,17 +150,23 @@ impl MadeWorse {
         Self::disk(before, after, is_misfit).or_else(|| Self::tensions(before, after))
     }
 
+    /// Compares the disks under the measured tensions, and under the model's own.
     fn disk(before: &Evaluation, after: &Evaluation, is_misfit: bool) -> Option<Self> {
-        let places = |evaluation: &Evaluation| -> Vec<Vec<[f64; 2]>> {
-            let of_row = |row: &Row| row.marker_m.chunks_exact(2).map(|place| [place[0], place[1]]).collect();
-            evaluation.runs.iter().flat_map(|run| run.rows.iter().map(of_row)).collect()
+        let grown = |marker_m: fn(&Row) -> &Vec<f64>| {
+            let places = |evaluation: &Evaluation| -> Vec<Vec<[f64; 2]>> {
+                let of_row = |row: &Row| marker_m(row).chunks_exact(2).map(|place| [place[0], place[1]]).collect();
+                evaluation.runs.iter().flat_map(|run| run.rows.iter().map(of_row)).collect()
+            };
+            let (before, after) = (places(before), places(after));
+            let noise_m = noise_m(&before)?;
+            let [before_m, after_m] = [&before, &after].map(|all| rms(all.iter().flatten().flatten()));
+            // Both coordinates of a distance have their noise.
+            let is_further = 2.0 * (after_m * after_m - before_m * before_m) > noise_m * noise_m;
+            grown([&before, &after], noise_m).filter(|_| is_misfit || is_further)
         };
-        let (before, after) = (places(before), places(after));
-        let noise_m = noise_m(&before)?;
-        let [before_m, after_m] = [&before, &after].map(|all| rms(all.iter().flatten().flatten()));
-        // Both coordinates of a distance have their noise.
-        let is_further = 2.0 * (after_m * after_m - before_m * before_m) > noise_m * noise_m;
-        grown([&before, &after], noise_m).filter(|_| is_misfit || is_further).map(Self::Disk)
+        let worse = [grown(|row| &row.marker_m), grown(|row| &row.own_marker_m)].into_iter().flatten();
+        let growth_m = |worse: &Worse| worse.after_m - worse.before_m;
+        worse.max_by(|one, other| growth_m(one).total_cmp(&growth_m(other))).map(Self::Disk)
     }
 
     fn tensions(before: &Evaluation, after: &Evaluation) -> Option<Self> {
@@ -161,6 +189,15 @@ fn gratings_left_n(found: &Evaluation) -> Vec<Vec<f64>> {
     };
     let gratings = |run: &RunEvaluation| run.rows.iter().map(|row| row.tension_n.len()).max().unwrap_or(0);
     found.runs.iter().flat_map(|run| (0..gratings(run)).map(move |grating| of_grating(run, grating))).collect()
+}
+
+/// Returns the distances of the disks from their markers, m: a series for each disk and axis of each run.
+fn markers_left_m(found: &Evaluation) -> Vec<Vec<f64>> {
+    let places = |run: &RunEvaluation| run.rows.iter().map(|row| row.marker_m.len()).max().unwrap_or(0);
+    let of_place = |run: &RunEvaluation, place: usize| -> Vec<f64> {
+        run.rows.iter().map(|row| row.marker_m.get(place).copied().unwrap_or(f64::NAN)).collect()
+    };
+    found.runs.iter().flat_map(|run| (0..places(run)).map(move |place| of_place(run, place))).collect()
 }
 
 /// Returns the directions that the runs leave open, in units of the widest intervals.

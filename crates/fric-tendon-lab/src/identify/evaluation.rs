@@ -75,6 +75,8 @@ pub struct Row {
     pub tension_n: Vec<f64>,
     /// Markers minus disks, x and y alternating, base frame, m.
     pub marker_m: Vec<f64>,
+    /// The same under the model's own tensions, computed from that at the base.
+    pub own_marker_m: Vec<f64>,
 }
 
 /// Shapes with their inputs, so that they need not be computed again.
@@ -228,15 +230,16 @@ impl One {
                 }
                 _ => Vec::new(),
             };
-            let marker_m = shown.and_then(|one| one.shapes.get(place)).map_or_else(Vec::new, |shape| {
+            let off_disks_m = |shape: &ComputedShape| -> Vec<f64> {
                 let has_shape = shape.status.has_shape();
                 let places = shape.disk_position_m.iter().zip(&sample.marker_m);
                 let left = |([x_m, y_m], [marker_x_m, marker_y_m]): (&[f64; 2], &[f64; 2])| {
                     if has_shape { [marker_x_m - x_m, marker_y_m - y_m] } else { [f64::NAN; 2] }
                 };
                 places.flat_map(left).collect()
-            });
-            Row { tension_n, marker_m }
+            };
+            let marker_m = shown.and_then(|one| one.shapes.get(place)).map_or_else(Vec::new, off_disks_m);
+            Row { tension_n, marker_m, own_marker_m: own.map_or_else(Vec::new, off_disks_m) }
         };
         let rows = samples.iter().enumerate().map(row).collect();
         Some(RunEvaluation { history, measured, rows })

@@ -90,7 +90,7 @@ pub fn identify(
         // Numbers that move a disk away from its marker stand for something else. Friction may still be found.
         let friction: Vec<Quantity> = quantities.iter().copied().filter(|one| one.is_friction()).collect();
         let without = if friction.len() < quantities.len() { Some(attempt(&friction)?) } else { None };
-        let better = without.filter(|without| without.worse.is_none() && !without.is_misfit);
+        let better = without.filter(|without| without.worse.is_none() && !without.misfit.any());
         let left = if better.is_some() { friction } else { Vec::new() };
         found = better.map_or_else(|| attempt(&[]), Ok)?;
         kept.push(Undetermined::worse(quantities.iter().filter(|one| !left.contains(one)), &worse));

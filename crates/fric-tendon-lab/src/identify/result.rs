@@ -39,8 +39,10 @@ pub struct TendonFitResult {
     pub before: Disagreement,
     /// Errors with the fitted file.
     pub after: Disagreement,
-    /// Whether more of the gratings' tensions is left than noise and errors of their lines, so that something else is missing or wrong.
+    /// Whether more is left than noise and errors of the gratings' lines, so that something else is missing or wrong.
     pub is_misfit: bool,
+    /// Of which signals: `gratings`, `markers`.
+    pub misfit_of: Vec<&'static str>,
 }
 
 /// Numbers that the runs cannot distinguish, or do not determine at all.
@@ -180,7 +182,11 @@ impl TendonFitResult {
             undetermined: found.undetermined,
             before: Disagreement::of(&found.before),
             after: Disagreement::of(&found.after),
-            is_misfit: found.is_misfit,
+            is_misfit: found.misfit.any(),
+            misfit_of: [(found.misfit.gratings, "gratings"), (found.misfit.markers, "markers")]
+                .into_iter()
+                .filter_map(|(is_left, signal)| is_left.then_some(signal))
+                .collect(),
         }
     }
 }

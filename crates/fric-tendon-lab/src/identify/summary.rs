@@ -7,10 +7,6 @@ use super::super::base_noise::BaseNoise;
 use super::super::guard::Guard;
 use super::result::{Disagreement, TendonFitResult};
 
-/// What a fit says that leaves more than noise.
-const MISFIT: &str = "more of the gratings' tensions is left than noise and errors of their lines, so something is missing or wrong that the fit does not vary, and \
-                      values and intervals may be off; `fric-cli discover` looks for it";
-
 impl TendonFitResult {
     /// Returns a summary for people.
     #[must_use]
@@ -45,10 +41,23 @@ impl TendonFitResult {
         for step in self.steps() {
             text += &wrapped("step: ", &format!("{step}."));
         }
-        if self.is_misfit {
-            text += &wrapped("misfit: ", &format!("{MISFIT}."));
+        if let Some(misfit) = self.misfit() {
+            text += &wrapped("misfit: ", &format!("{misfit}."));
         }
         text
+    }
+
+    /// Returns what the fit leaves more of than noise, in a sentence; `None` if it does not.
+    fn misfit(&self) -> Option<String> {
+        let what = match self.misfit_of.as_slice() {
+            [] => return None,
+            ["gratings"] => "more of the gratings' tensions is left than noise and errors of their lines",
+            ["markers"] => "disks stay further from their markers than noise",
+            _ => "more of the gratings' tensions is left than noise, and disks stay further from their markers",
+        };
+        Some(format!(
+            "{what}, so something is missing or wrong that the fit does not vary, and values and intervals may be off; `fric-cli discover` looks for it"
+        ))
     }
 
     /// Returns one sentence for each common step of the gratings.
@@ -71,7 +80,7 @@ impl TendonFitResult {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let open = self.undetermined.iter().map(|open| open.sentence.clone());
-        open.chain(self.noises()).chain(self.steps()).chain(self.is_misfit.then(|| MISFIT.to_owned())).collect()
+        open.chain(self.noises()).chain(self.steps()).chain(self.misfit()).collect()
     }
 }
 

@@ -120,6 +120,13 @@ pub fn of_tendon(result: &DiscoverResult<Manipulator>) -> Verdict {
         if tendon.verdict == "complete" {
             parts.push("The model is complete: what is left is noise.".to_owned());
         }
+        if tendon.markers.is_none() {
+            is_well = false;
+            parts.push("The bending is not checked, for the run has no markers.".to_owned());
+            todo.push(
+                "Record markers on the disks; without them a wrong stiffness, offset or load stays hidden.".to_owned(),
+            );
+        }
         if !kinds.is_empty() {
             parts.push(format!("The model lacks {}.", listed(&kinds)));
         }
