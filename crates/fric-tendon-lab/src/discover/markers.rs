@@ -10,15 +10,13 @@ use super::case::{Case, Fit, off_markers};
 use super::friction::model::Model;
 use crate::fbg::Tension;
 use crate::gratings::GratingSample;
+use crate::identify::errors::{PRACTICAL, model_marker_m};
 use crate::run::RunSample;
 use crate::shape_errors::{Way, shapes};
 
 /// Limits of noise: this many standard errors of the calibration lines, and a relative error of the noise estimate itself.
 const LINE_ERRORS: f64 = 2.0;
 const NOISE_ERROR_RATIO: f64 = 0.3;
-/// Negligible distance as a fraction of the manipulator's length. Segments of constant curvature cause 0.02 % at a bend of 130°. At half this value,
-/// quiet runs of a correct model come near the bound; at twice, a bending stiffness that is 0.5 % off is missed.
-const PRACTICAL_RATIO: f64 = 0.0005;
 /// Maximum number of samples at which the influence of the lines on the shapes is computed.
 const MOST_SHAPES: usize = 40;
 
@@ -56,7 +54,7 @@ impl MarkerFit {
         }
         let line_error_m = line_error_m(case, &fit.model, &tension_n)?;
         let params = case.file.params();
-        let practical_m = PRACTICAL_RATIO * params.length_m();
+        let practical_m = PRACTICAL * model_marker_m(params, tension_n.iter().map(Vec::as_slice));
         Some(Self { residual_m, tension_n, noise_m, line_error_m, distance_m, greatest_m, practical_m })
     }
 

@@ -11,7 +11,7 @@ use super::case::{Case, Fit};
 const LAGS: usize = 4;
 /// Number of standard errors beyond which a mean product is not noise: one in a thousand.
 const STANDARD_ERRORS: f64 = 3.0;
-/// Negligible error in the verdict, as a fraction of the greatest tension, or of the length for a place. It is twice the difference between Dahl's contacts and holes that stick
+/// Negligible error in the verdict, as a fraction of the greatest tension. It is twice the difference between Dahl's contacts and holes that stick
 /// and slip in runs with both directions, 0.4 mN of 1.7 N.
 pub const PRACTICAL_RATIO: f64 = 0.0005;
 

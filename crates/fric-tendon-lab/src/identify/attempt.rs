@@ -5,7 +5,7 @@ use fric_lab::statistics::inverse_of_normal;
 use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
 use nalgebra::DMatrix;
 
-use super::errors;
+use super::errors::{self, PRACTICAL};
 use super::evaluation::{Evaluation, Row, RunEvaluation, Runs};
 use super::least_squares::{Solution, solve};
 use super::quantity::Quantity;
@@ -100,7 +100,7 @@ impl Attempt {
                 PRACTICAL_RATIO * runs.greatest_tension_n,
                 step_count,
             ),
-            markers: is_misfit(&markers_left_m(&solution.evaluation), PRACTICAL_RATIO * runs.given.length_m(), 0),
+            markers: is_misfit(&markers_left_m(&solution.evaluation), PRACTICAL * runs.model_marker_m, 0),
         };
         Ok(Self {
             worse: MadeWorse::of(&before, &after, misfit.any()),

@@ -16,6 +16,7 @@ use super::super::gratings::{GratingSample, Gratings};
 use super::super::measuring::corrected;
 use super::super::run::{Run, RunSample};
 use super::super::shape_errors::{ComputedShape, Way, shapes};
+use super::errors::model_marker_m;
 use super::unknown::Unknown;
 
 /// Runs to compare with, and the file at which the search starts.
@@ -24,6 +25,8 @@ pub struct Runs<'a> {
     all: Vec<One>,
     has_gratings: bool,
     pub greatest_tension_n: f64,
+    /// Root mean square error of the model's disks, m.
+    pub model_marker_m: f64,
     /// Ends the work if it is stopped; `None` where it is short.
     progress: Option<&'a Progress>,
 }
@@ -126,7 +129,10 @@ impl<'a> Runs<'a> {
         let samples = all.iter().flat_map(|run| run.whole.samples());
         let greatest_tension_n = samples.map(|sample| sample.tension_base_n).fold(0.0, f64::max);
         let greatest_tension_n = if greatest_tension_n > 0.0 { greatest_tension_n } else { 1.0 };
-        Ok(Self { given: file.tables().clone(), all, has_gratings, greatest_tension_n, progress })
+        let of_base = |sample: &RunSample| vec![sample.tension_base_n; file.params().disk_count()];
+        let base_n: Vec<Vec<f64>> = all.iter().flat_map(|run| run.whole.samples()).map(of_base).collect();
+        let model_marker_m = model_marker_m(file.params(), base_n.iter().map(Vec::as_slice));
+        Ok(Self { given: file.tables().clone(), all, has_gratings, greatest_tension_n, model_marker_m, progress })
     }
 
     /// Returns the times of the compared samples of the first run, s.

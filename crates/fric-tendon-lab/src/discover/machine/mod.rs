@@ -17,7 +17,7 @@ use self::candidate::Candidate;
 use self::joint::{Jacobian, Joint, Point, Set, Units};
 use crate::discover::case::thinned_to;
 use crate::discover::friction::naming::LEAST_EVIDENCE;
-use crate::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
+use crate::identify::errors::{MODEL_TENSION_RATIO, PRACTICAL};
 use crate::identify::unknown::Unknown;
 use crate::run::{Run, RunSample};
 
@@ -33,7 +33,7 @@ const STUCK_RATIO: f64 = 2.0;
 const RESTARTS: [f64; 6] = [-6.0, -4.0, -2.0, 2.0, 4.0, 6.0];
 /// Candidates that promise this fraction of the best one's evidence are fitted completely before they are compared.
 const NEAR_RATIO: f64 = 0.8;
-/// Negligible change, as a fraction of the greatest tension and of the length.
+/// Negligible change of the tensions, as a fraction of the greatest one.
 const PRACTICAL_RATIO: f64 = 0.0005;
 /// Temperature sensitivity of a silica grating, `α_Λ + α_n`, 1/K, and the C-band wavelength, nm, which is used if the file states none.
 const SILICA_PER_K: f64 = 6.85e-6;
@@ -425,14 +425,14 @@ impl Search<'_> {
         let tension_n2 = (one.tension_n2 - other.tension_n2) / one.tension_count.max(1.0);
         let marker_m2 = 2.0 * (one.marker_m2 - other.marker_m2) / one.marker_count.max(1.0);
         tension_n2 > (PRACTICAL_RATIO * self.joint.runs.greatest_tension_n).powi(2)
-            || marker_m2 > (PRACTICAL_RATIO * self.joint.length_m).powi(2)
+            || marker_m2 > (PRACTICAL * self.joint.runs.model_marker_m).powi(2)
     }
 
     /// Returns the difference up to which two candidates explain a run equally: chance plus the model's own error.
     fn margin(&self, now: &Place) -> f64 {
         let sums = self.joint.sums(&now.point);
         let tension = MODEL_TENSION_RATIO * self.joint.runs.greatest_tension_n / now.units.tension_n;
-        let marker = MODEL_MARKER_RATIO * self.joint.length_m / now.units.marker_m;
+        let marker = self.joint.runs.model_marker_m / now.units.marker_m;
         LEAST_EVIDENCE + sums.tension_count * tension * tension + sums.marker_count * marker * marker
     }
 }

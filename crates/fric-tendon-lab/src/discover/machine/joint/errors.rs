@@ -4,7 +4,7 @@ use fric_lab::statistics::{Scores, inverse_of_normal};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Jacobian, Joint, Point, Set, Units, weighted};
-use crate::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
+use crate::identify::errors::MODEL_TENSION_RATIO;
 
 /// Standard errors of a free number: with all contributions, and with white noise alone.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,7 @@ impl Joint<'_> {
         let inverse = inverse_of_normal(&(&matrices[0] + &matrices[1] + &known))?;
         let off = [
             (sums.tension_count, MODEL_TENSION_RATIO * self.runs.greatest_tension_n / units.tension_n),
-            (sums.marker_count, MODEL_MARKER_RATIO * self.length_m / units.marker_m),
+            (sums.marker_count, self.runs.model_marker_m / units.marker_m),
         ];
         let mut systematic = DMatrix::zeros(count, count);
         for (matrix, (count, off)) in matrices.iter().zip(off) {

@@ -15,7 +15,7 @@ use fric_tendon::file::{ManipulatorFile, OneOrEach, USUAL_SIGMA_N_PER_M};
 use rayon::prelude::*;
 
 use crate::discover::machine::candidate::Candidate;
-use crate::identify::errors::{MODEL_MARKER_RATIO, MODEL_TENSION_RATIO};
+use crate::identify::errors::MODEL_TENSION_RATIO;
 use crate::identify::evaluation::{Evaluation, Runs, State};
 use crate::identify::unknown::Unknown;
 use crate::run::Run;
@@ -41,7 +41,6 @@ pub struct Joint<'a> {
     /// Numbers of all candidates and of the friction. The lines follow, two numbers per grating.
     unknowns: Vec<Unknown>,
     line_count: usize,
-    pub length_m: f64,
 }
 
 /// Scales of the signals.
@@ -107,9 +106,8 @@ impl<'a> Joint<'a> {
                 unknowns.push(unknown);
             }
         }
-        let length_m = runs.given.length_m();
         let line_count = runs.start(&[]).lines.len();
-        Some(Self { runs, unknowns, line_count, length_m })
+        Some(Self { runs, unknowns, line_count })
     }
 
     /// Returns the state of the file as it is.
@@ -166,7 +164,7 @@ impl<'a> Joint<'a> {
             white_noise_throughout(&series)
         };
         let model_n = MODEL_TENSION_RATIO * self.runs.greatest_tension_n;
-        let model_m = MODEL_MARKER_RATIO * self.length_m;
+        let model_m = self.runs.model_marker_m;
         Units {
             tension_n: noise(false).unwrap_or(model_n).hypot(model_n),
             marker_m: noise(true).unwrap_or(model_m).hypot(model_m),
