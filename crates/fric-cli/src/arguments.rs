@@ -88,7 +88,7 @@ pub enum Command {
         after_help = "Examples:\n  fric-cli continuum simulate --model examples/tendon-prototype.toml -o pull.csv --calibration \
                       loads.csv\n  fric-cli continuum calibrate loads.csv --model examples/tendon-prototype.toml -o \
                       calibrated.toml\n  fric-cli continuum friction pull.csv --model calibrated.toml\n  fric-cli continuum shape \
-                      pull.csv --model calibrated.toml --report shapes.html"
+                      pull.csv --model calibrated.toml --report shapes.html\n\nWhat a model lacks: fric-cli discover pull.csv --model calibrated.toml"
     )]
     Continuum(continuum::ContinuumCommand),
     /// Print the completions of a shell, so that its Tab key knows commands, options and their values
