@@ -37,6 +37,13 @@ else
     cargo semver-checks $(printf -- '-p %s ' "${crates[@]}") --baseline-rev "$baseline"
 fi
 
+if command -v cargo-deny >/dev/null; then
+    echo "== licences, advisories and sources"
+    cargo deny check
+else
+    echo "not checked: licences and advisories; cargo-deny is not installed"
+fi
+
 echo "== wheels and source distribution"
 packaging/wheel.sh "$target/wheels"
 

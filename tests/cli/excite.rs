@@ -51,6 +51,20 @@ const LIMITS: [&str; 9] = [
     "25",
 ];
 
+/// A spreadsheet would execute a cell that begins so.
+#[test]
+fn a_name_is_no_formula_of_a_spreadsheet() {
+    for sign in ["=", "+", "-", "@"] {
+        let robot = slow_robot().replace("name = \"cable1\"", &format!("name = \"{sign}cmd\""));
+        let place = place_with(&robot);
+        excite(&place, &LIMITS).succeeds();
+        let file = String::from_utf8(place.read("run.csv")).unwrap();
+        let header: Vec<&str> = file.lines().next().unwrap().split(',').collect();
+        assert!(header.contains(&format!("'{sign}cmd_length_m").as_str()), "{header:?}");
+        assert!(header.iter().all(|cell| !cell.starts_with(sign)), "{header:?}");
+    }
+}
+
 #[test]
 fn the_set_points_hold_what_they_promise() {
     let place = place_with(&slow_robot());

@@ -136,6 +136,21 @@ fn what_a_file_says_never_commands_a_terminal() {
     refuses("cycle_s = 0.001", "cycle_s = \"\\u009b31m\"", &["u{9b}31m"]);
 }
 
+/// Nor does what a log says: U+009B begins a command as ESC [ does, and JSON leaves it as it is.
+#[test]
+fn what_a_log_says_never_commands_a_terminal() {
+    let place = Place::with_log();
+    let rows: String = (0..20).map(|row| format!("0.{row:03},1,2,3\n")).collect();
+    place.write("run.csv", format!("time_s,\u{9b}31m,cable1.force_n,cable1.length_m\n{rows}"));
+    let run =
+        place.run(&["info", "run.csv", "--model", "robot.toml", "--json", "-", "--report", "page.html"]).succeeds();
+    let page = String::from_utf8(place.read("page.html")).unwrap();
+    for text in [&run.stdout, &run.stderr, &page] {
+        assert!(!text.contains('\u{9b}'), "{text}");
+    }
+    assert!(run.stdout.contains("\\u009b31m") && page.contains("u{9b}31m"), "{run:#?}");
+}
+
 #[test]
 fn a_file_of_many_cables_or_bytes_is_refused_at_once() {
     let place = Place::with_log();

@@ -2,8 +2,8 @@
 //!
 //! Every equation of this crate is generic over [`Scalar`], so that one source serves three uses: plain `f64` (one cable), [`Lanes`](crate::Lanes)
 //! (several cables side by side, as in the control cycle), and numbers that carry derivatives (a fit). Choices that depend on data are
-//! [`select`](Scalar::select)s, not branches, so all lanes take the same path and a cycle takes the same time whatever the cables do. The exceptions
-//! take longer: held or repeated signals, and a sensor that has jumped.
+//! [`select`](Scalar::select)s, not branches, so all lanes take the same path and a cycle takes the same instructions whatever the cables do. The
+//! exceptions take more: held or repeated signals, a sensor that has jumped, inertia at rest, and the first cycle of new parameters.
 //!
 //! Only operations that IEEE 754 rounds exactly are used (`+ − × ÷ √` and comparisons). Transcendental functions, mainly [`exp_negative`], are built
 //! from them; the logarithm is that of the `libm` crate. Results therefore do not depend on the platform.

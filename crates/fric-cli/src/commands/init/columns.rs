@@ -2,7 +2,7 @@
 
 use fric_core::robot::file::{POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
 
-use super::draft::{ColumnGuess, Draft, FORCE, LENGTH};
+use super::draft::{ColumnGuess, Draft, FORCE, LENGTH, is_one};
 
 /// The possible content of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +40,7 @@ const UNITS: [(&str, Kind, f64); 22] = [
 ];
 
 /// Words in column names that indicate the content if no unit does.
-const WORDS: [(&str, Kind); 32] = [
+const WORDS: [(&str, Kind); 34] = [
     ("time", Kind::Time),
     ("timestamp", Kind::Time),
     ("datetime", Kind::Time),
@@ -56,6 +56,8 @@ const WORDS: [(&str, Kind); 32] = [
     ("kraft", Kind::Force),
     ("seilkraft", Kind::Force),
     ("f", Kind::Force),
+    ("fref", Kind::Force),
+    ("fplat", Kind::Force),
     ("length", Kind::Length),
     ("len", Kind::Length),
     ("position", Kind::Length),
@@ -75,7 +77,30 @@ const WORDS: [(&str, Kind); 32] = [
     ("v", Kind::Speed),
 ];
 /// Words that mark a force at the platform.
-const REFERENCE_WORDS: [&str; 6] = ["ref", "reference", "referenz", "platform", "plattform", "payload"];
+const REFERENCE_WORDS: [&str; 8] =
+    ["ref", "reference", "referenz", "platform", "plattform", "payload", "fref", "fplat"];
+/// Words that name no cable.
+const OTHER_WORDS: [&str; 20] = [
+    "cable", "seil", "winch", "winde", "motor", "cell", "zelle", "sensor", "ist", "actual", "measured", "gemessen",
+    "raw", "filtered", "of", "the", "des", "der", "at", "in",
+];
+/// Words beside the axis of a column of the pose.
+const POSE_WORDS: [&str; 13] = [
+    "pose",
+    "position",
+    "pos",
+    "platform",
+    "plattform",
+    "tcp",
+    "tool",
+    "ee",
+    "translation",
+    "p",
+    "rigid",
+    "body",
+    "trans",
+];
+const ORIENTATION_WORDS: [&str; 8] = ["q", "quat", "quaternion", "orientation", "orient", "rotation", "rot", "ori"];
 /// Words that mark what was commanded, not measured, and beginnings of such words.
 const COMMAND_WORDS: [&str; 8] = ["set", "setpoint", "target", "command", "commanded", "cmd", "desired", "demand"];
 const COMMAND_BEGINNING: &str = "soll";
@@ -88,15 +113,22 @@ const OTHER_UNITS: [&str; 26] = [
 /// Guesses the signals of columns with these names and, if the log states them apart from the names, units.
 pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
     let has = |name: &str| names.iter().any(|known| known == name);
+    let unit_of = |place: usize| units.get(place).map_or("", String::as_str);
     let mut unknown = Vec::new();
-    let mut found: Vec<ColumnGuess> = Vec::new();
+    let (mut found, positions) = pose(names, &unit_of, draft);
+    let are_labels = has_labels(names, &unit_of);
     for (place, name) in names.iter().enumerate() {
-        if POSE_COLUMNS.contains(&name.as_str()) || WRENCH_COLUMNS.contains(&name.as_str()) {
+        let is_of_pose = POSE_COLUMNS.contains(&name.as_str()) || positions.contains(&place);
+        if is_of_pose || WRENCH_COLUMNS.contains(&name.as_str()) {
             continue;
         }
-        let Some((key, factor)) = signal(name, units.get(place).map_or("", String::as_str)) else {
+        let Some((key, factor)) = signal(name, unit_of(place)) else {
             unknown.push(name.clone());
             continue;
+        };
+        let key = match label(name).filter(|_| are_labels) {
+            Some(label) => key.replacen("cable1.", &format!("{label}."), 1),
+            None => key,
         };
         if found.iter().any(|guess| guess.key == key) {
             draft.notes.push(format!("{key}: column {name:?} could be meant too"));
@@ -144,8 +176,8 @@ pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
                 .to_owned(),
         );
     }
-    draft.has_pose = has(POSE_COLUMNS[0]);
-    if !draft.has_pose {
+    draft.has_pose = has(POSE_COLUMNS[0]) || found.iter().any(|guess| guess.key == POSE_COLUMNS[0]);
+    if !draft.has_pose && positions.is_empty() {
         draft.notes.push("pose: no columns pose.x_m to pose.qw; a bench needs none".to_owned());
     }
     if !unknown.is_empty() {
@@ -153,10 +185,95 @@ pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
     }
     // A reference of a cable without a force is dropped.
     found.retain(|guess| {
-        guess.key == TIME_COLUMN || draft.cables.iter().any(|cable| guess.key.starts_with(&format!("{cable}.")))
+        let is_of_cable = || draft.cables.iter().any(|cable| guess.key.starts_with(&format!("{cable}.")));
+        guess.key == TIME_COLUMN || POSE_COLUMNS.contains(&guess.key.as_str()) || is_of_cable()
     });
-    found.retain(|guess| guess.key != guess.column);
+    found.retain(|guess| guess.key != guess.column || !is_one(guess.factor));
     draft.columns = found;
+}
+
+/// Returns the columns of a pose with other names, and the places of all that belong to it.
+fn pose<'a>(names: &[String], unit_of: &dyn Fn(usize) -> &'a str, draft: &mut Draft) -> (Vec<ColumnGuess>, Vec<usize>) {
+    let mut found: Vec<(usize, ColumnGuess)> = Vec::new();
+    for (place, name) in names.iter().enumerate() {
+        if let Some((key, factor)) = of_pose(name, unit_of(place))
+            && !found.iter().any(|(_, guess)| guess.key == key)
+        {
+            let states_unit = name.contains(['[', '(']) || !unit_of(place).is_empty();
+            found.push((place, ColumnGuess { key, column: name.clone(), factor, states_unit }));
+        }
+    }
+    let has = |key: &&str| found.iter().any(|(_, guess)| guess.key == **key);
+    if !POSE_COLUMNS[..3].iter().all(&has) {
+        // One axis is the way of a bench.
+        return (Vec::new(), Vec::new());
+    }
+    let places = found.iter().map(|(place, _)| *place).collect();
+    if POSE_COLUMNS.iter().all(&has) {
+        return (found.into_iter().map(|(_, guess)| guess).collect(), places);
+    }
+    let names: Vec<&str> = found.iter().map(|(_, guess)| guess.column.as_str()).collect();
+    draft
+        .notes
+        .push(format!("pose: {} look like a position; a pose needs a quaternion too, qx to qw", names.join(", ")));
+    (Vec::new(), places)
+}
+
+/// Returns the key of a column of a pose, and the factor to its unit.
+fn of_pose(name: &str, stated_unit: &str) -> Option<(String, f64)> {
+    let lower = name.to_lowercase();
+    let stated_unit = stated_unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
+    let (words, unit) = parts(&lower);
+    let unit = unit.or_else(|| Some(stated_unit.as_str()).filter(|unit| !unit.is_empty()));
+    let (last, beside) = words.split_last()?;
+    let (is_turn, axis) = match last.as_bytes() {
+        [axis @ (b'x'..=b'z' | b'w')] => (beside.iter().any(|word| ORIENTATION_WORDS.contains(&word.as_str())), *axis),
+        [b'q', axis @ (b'x'..=b'z' | b'w')] => (true, *axis),
+        [b'p', axis @ b'x'..=b'z'] => (false, *axis),
+        _ => return None,
+    };
+    let is_plain =
+        |word: &String| POSE_WORDS.contains(&word.as_str()) || is_turn && ORIENTATION_WORDS.contains(&word.as_str());
+    let place = [b'x', b'y', b'z', b'w'].iter().position(|one| *one == axis)?;
+    let place = if is_turn { place + 3 } else { place };
+    let factor = match unit {
+        None => 1.0,
+        Some(unit) if !is_turn => UNITS.iter().find(|(of, kind, _)| *of == unit && *kind == Kind::Length)?.2,
+        Some(unit) => Some(1.0).filter(|_| ["1", "-", ""].contains(&unit))?,
+    };
+    let key = POSE_COLUMNS.get(place).filter(|_| (is_turn || axis != b'w') && beside.iter().all(is_plain))?;
+    Some(((*key).to_owned(), factor))
+}
+
+/// Whether the columns tell the cables apart by a word in place of a number: each word stands once at a force and once at a length.
+fn has_labels<'a>(names: &[String], unit_of: &dyn Fn(usize) -> &'a str) -> bool {
+    let labels = |end: &str| -> Vec<Option<String>> {
+        let of_kind = names.iter().enumerate().filter(|(place, name)| {
+            signal(name, unit_of(*place)).is_some_and(|(key, _)| key == format!("cable1{end}"))
+        });
+        let mut labels: Vec<Option<String>> = of_kind.map(|(_, name)| label(name)).collect();
+        labels.sort();
+        labels
+    };
+    let (forces, lengths) = (labels(FORCE), labels(LENGTH));
+    let are_different = forces.iter().zip(forces.iter().skip(1)).all(|(one, next)| one != next);
+    forces.len() > 1 && are_different && forces.iter().all(Option::is_some) && forces == lengths
+}
+
+/// Returns the words of a column's name that say neither what it is nor its number.
+fn label(name: &str) -> Option<String> {
+    let lower = name.to_lowercase();
+    let (words, _) = parts(&lower);
+    let is_known = |word: &&String| {
+        WORDS.iter().any(|(of, _)| of == word)
+            || REFERENCE_WORDS.contains(&word.as_str())
+            || OTHER_WORDS.contains(&word.as_str())
+    };
+    if words.iter().any(|word| word.bytes().all(|byte| byte.is_ascii_digit())) {
+        return None;
+    }
+    let rest: Vec<&str> = words.iter().filter(|word| !is_known(word)).map(String::as_str).collect();
+    (!rest.is_empty()).then(|| rest.join("_"))
 }
 
 /// Returns the probable signal of a column, and the factor to its unit, which the name or the line of units states. One with a unit of something else is
@@ -165,14 +282,16 @@ fn signal(name: &str, stated_unit: &str) -> Option<(String, f64)> {
     if name == TIME_COLUMN {
         return Some((name.to_owned(), 1.0));
     }
+    let stated_unit = stated_unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
     if let Some((cable, quantity)) = name.rsplit_once('.')
         && ["force_n", "length_m", "speed_m_per_s", "reference_n"].contains(&quantity)
         && !cable.is_empty()
     {
-        return Some((name.to_owned(), 1.0));
+        // The name has a unit of its own, which the line of units may contradict.
+        let factor = UNITS.iter().find(|(of, ..)| *of == stated_unit).map_or(1.0, |(_, _, factor)| *factor);
+        return Some((name.to_owned(), factor));
     }
     let lower = name.to_lowercase();
-    let stated_unit = stated_unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
     let (words, unit) = parts(&lower);
     let unit = unit.or_else(|| Some(stated_unit.as_str()).filter(|unit| !unit.is_empty()));
     let is_of_command = |word: &String| COMMAND_WORDS.contains(&word.as_str()) || word.starts_with(COMMAND_BEGINNING);
@@ -258,6 +377,51 @@ mod tests {
         }
     }
 
+    fn drafted(names: &[&str]) -> Draft {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let mut draft = Draft::new("log".to_owned());
+        guess(&names, &[], &mut draft);
+        draft
+    }
+
+    /// Whether a signal was found in a column, with this factor.
+    fn has(draft: &Draft, key: &str, column: &str, factor: f64) -> bool {
+        draft
+            .columns
+            .iter()
+            .any(|guess| (guess.key.as_str(), guess.column.as_str()) == (key, column) && is_one(guess.factor / factor))
+    }
+
+    #[test]
+    fn cables_are_named_by_words_where_these_pair_up() {
+        let draft =
+            drafted(&["Zeit [s]", "Kraft links [N]", "Kraft rechts [N]", "Weg links [mm]", "Weg rechts [mm]", "Fref1"]);
+        assert_eq!(draft.cables, ["links", "rechts"]);
+        assert!(has(&draft, "rechts.length_m", "Weg rechts [mm]", 1e-3), "{draft:?}");
+        assert_eq!(drafted(&["t", "F_FL", "F_FR", "F_RL", "L_FL", "L_FR", "L_RL"]).cables, ["fl", "fr", "rl"]);
+        // Words that only one of the signals has are no cables.
+        assert_eq!(drafted(&["time_s", "motor_force_n", "position_m"]).cables, ["cable1"]);
+        assert_eq!(signal("Fref1", ""), Some(("cable1.reference_n".to_owned(), 1.0)));
+    }
+
+    #[test]
+    fn poses_are_found_whatever_their_prefix() {
+        for position in [
+            ["x [mm]", "y [mm]", "z [mm]"],
+            ["pose_x_mm", "pose_y_mm", "pose_z_mm"],
+            ["Platform X (mm)", "Platform Y (mm)", "Platform Z (mm)"],
+        ] {
+            let draft = drafted(&[&["time_s", "F1", "L1"], &position[..], &["qx", "qy", "qz", "qw"]].concat());
+            assert!(draft.has_pose && draft.cables == ["cable1"], "{draft:?}");
+            assert!(has(&draft, "pose.z_m", position[2], 1e-3) && has(&draft, "pose.qw", "qw", 1.0), "{draft:?}");
+        }
+        let draft = drafted(&["time_s", "F1", "L1", "x [m]", "y [m]", "z [m]", "roll", "pitch"]);
+        assert!(!draft.has_pose && !draft.columns.iter().any(|guess| guess.column == "x [m]"), "{draft:?}");
+        assert!(draft.notes.iter().any(|note| note.contains("needs a quaternion")), "{draft:?}");
+        // One axis is the way of a bench.
+        assert!(has(&drafted(&["time_s", "F", "x [m]"]), "cable1.length_m", "x [m]", 1.0));
+    }
+
     #[test]
     fn a_line_of_units_counts_where_the_name_has_none() {
         assert_eq!(signal("Kraft", "kN"), Some(("cable1.force_n".to_owned(), 1e3)));
@@ -265,5 +429,6 @@ mod tests {
         assert_eq!(signal("Weg 2 [m]", "mm"), Some(("cable2.length_m".to_owned(), 1.0)));
         assert_eq!(signal("Weg", ""), Some(("cable1.length_m".to_owned(), 1.0)));
         assert_eq!(signal("Position", "rev"), None);
+        assert_eq!(signal("winch.length_m", "mm"), Some(("winch.length_m".to_owned(), 1e-3)));
     }
 }

@@ -174,7 +174,7 @@ impl Draft {
     }
 }
 
-fn is_one(factor: f64) -> bool {
+pub fn is_one(factor: f64) -> bool {
     factor.to_bits() == 1.0_f64.to_bits()
 }
 
