@@ -22,7 +22,7 @@ pub const MODEL_TENSION_RATIO: f64 = 0.00024;
 const MODEL_MARKER_RATIO: f64 = 0.0002;
 /// Distance by which constant curvature misses a disk, as a multiple of the pitch and the third power of a segment's bend, rad: between two holes the
 /// tendon is straight, so that the curvature is least in the middle. 0.09 to 0.12 in the mean of finely divided arms of 8, 6, 4 and 3 segments, at bends
-/// to 65° each; with eight segments it is negligible.
+/// to 65° each. With eight segments it is less than [`MODEL_MARKER_RATIO`] has, which was found with these.
 const ARC_RATIO: f64 = 0.1;
 /// Negligible distance as a multiple of the model's own error. At half of it, quiet runs of a correct model come near the bound; at twice, a bending
 /// stiffness that is 0.5 % off is missed.
@@ -43,7 +43,7 @@ pub fn model_marker_m<'a>(params: &ManipulatorParams, tension_n: impl Iterator<I
             arc_m.add(ARC_RATIO * pitch_m * bend_rad.powi(3));
         }
     }
-    (MODEL_MARKER_RATIO * params.length_m()).hypot(arc_m.rms().unwrap_or(0.0))
+    (MODEL_MARKER_RATIO * params.length_m()).max(arc_m.rms().unwrap_or(0.0))
 }
 
 /// Returns the covariance of the unknowns as distances, without the lines; `None` if the run says nothing.
