@@ -142,8 +142,8 @@ fn what_a_log_says_never_commands_a_terminal() {
     let place = Place::with_log();
     let rows: String = (0..20).map(|row| format!("0.{row:03},1,2,3\n")).collect();
     place.write("run.csv", format!("time_s,\u{9b}31m,cable1.force_n,cable1.length_m\n{rows}"));
-    let run =
-        place.run(&["info", "run.csv", "--model", "robot.toml", "--json", "-", "--report", "page.html"]).succeeds();
+    let run = place.run(&["info", "run.csv", "--model", "robot.toml", "--json", "-", "--report", "page.html"]);
+    assert_eq!(run.code, Some(0), "{run:#?}");
     let page = String::from_utf8(place.read("page.html")).unwrap();
     for text in [&run.stdout, &run.stderr, &page] {
         assert!(!text.contains('\u{9b}'), "{text}");

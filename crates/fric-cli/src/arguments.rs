@@ -82,13 +82,13 @@ pub enum Command {
     /// The platform has to cross a position to and fro along an axis; `simulate --run crossing` makes such a log.
     #[command(after_help = "Example:\n  fric-cli hysteresis crossing.mcap")]
     Hysteresis(HysteresisArguments),
-    /// Tendons through disks: calibrate gratings, measure friction, compute shapes of a continuum manipulator
+    /// Tendons through disks: calibrate gratings, measure friction, compute shapes of a continuum manipulator; `discover` finds what its model lacks
     #[command(
         subcommand,
         after_help = "Examples:\n  fric-cli continuum simulate --model examples/tendon-prototype.toml -o pull.csv --calibration \
                       loads.csv\n  fric-cli continuum calibrate loads.csv --model examples/tendon-prototype.toml -o \
                       calibrated.toml\n  fric-cli continuum friction pull.csv --model calibrated.toml\n  fric-cli continuum shape \
-                      pull.csv --model calibrated.toml --report shapes.html\n\nWhat a model lacks: fric-cli discover pull.csv --model calibrated.toml"
+                      pull.csv --model calibrated.toml --report shapes.html"
     )]
     Continuum(continuum::ContinuumCommand),
     /// Print the completions of a shell, so that its Tab key knows commands, options and their values

@@ -94,6 +94,8 @@ def _of_file(job: Job, path: Path, state: _State) -> Outcome:
         warnings.simplefilter("always")
         state.log = read_log(path, state.robot)
         state.robot = state.robot or state.log.robot
+        if state.robot is None:
+            raise LogError(f"{job.log.address} has no robot file attached; give the robot as `model`")
         state.path = store.path(job.operation, state.robot.name, _month(state.log), state.log_hash, job.key)
         if known := _known(store, job, state):
             return known

@@ -100,7 +100,9 @@ impl Attempt {
                 PRACTICAL_RATIO * runs.greatest_tension_n,
                 step_count,
             ),
-            markers: is_misfit(&markers_left_m(&solution.evaluation), PRACTICAL * runs.model_marker_m, 0),
+            // The error of a step's size is one of all tensions, and bends the whole shape.
+            markers: step_count == 0
+                && is_misfit(&markers_left_m(&solution.evaluation), PRACTICAL * runs.model_marker_m, 0),
         };
         Ok(Self {
             worse: MadeWorse::of(&before, &after, misfit.any()),
