@@ -9,6 +9,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 ROBOT = ROOT / "examples" / "mini-ipanema.toml"
+# The build that `cargo test` leaves behind.
+PROGRAM = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "debug" / "fric-cli"
 LOG = ROOT / "examples" / "mini-ipanema.mcap"
 ARM = ROOT / "examples" / "tendon-prototype.toml"
 # After so long a process hangs. It says nothing about speed: a busy machine takes several times as long as an idle one.
@@ -26,10 +28,8 @@ SLOW_BENCH = BENCH.replace("cycle_s = 0.001", "cycle_s = 0.004")
 
 
 def run(*arguments):
-    """Runs the build that `cargo test` leaves behind and gives what it warns of."""
-    target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
-    command = [target / "debug" / "fric-cli", *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
+    """Runs the command line and gives what it warns of."""
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done
     return done.stderr
 

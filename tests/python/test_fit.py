@@ -39,8 +39,7 @@ def bench():
 
 
 def by_command_line(place, *options, logs=("log3.mcap",)):
-    target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "debug" / "fric-cli"
-    command = [target, "fit", *logs, "-o", "fitted.toml", "--json", "fit.json", "--force", *options]
+    command = [PROGRAM, "fit", *logs, "-o", "fitted.toml", "--json", "fit.json", "--force", *options]
     done = subprocess.run(command, cwd=place, capture_output=True, text=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done
     read = [(place / name).read_text(encoding="utf-8") for name in ("fit.json", "fitted.toml")]

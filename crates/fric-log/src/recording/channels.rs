@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use super::record::{ChannelFields, SchemaFields, op};
+use super::record::{ChannelFields, ENTRY_COST, SchemaFields, op};
 
 /// The definition of a channel's messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,6 +42,8 @@ pub(super) enum Received {
     Fine,
     /// It cannot be parsed.
     Broken,
+    /// It is beyond what is kept of definitions.
+    TooLarge,
     /// It contradicts an earlier one.
     Conflict,
 }
@@ -78,13 +80,13 @@ struct FileTable {
     dense: Vec<Option<u32>>,
 }
 
-/// Size of all definitions of a recording together, bytes; those of a robot's log have some hundred kilobytes. What is beyond it counts as broken.
-const MOST_BYTES: usize = 32 << 20;
+/// Size of all definitions of a recording together, bytes; those of a robot's log have some hundred kilobytes. What is beyond it is left out.
+const MOST_BYTES: u64 = 32 << 20;
 
 /// All channels of a recording.
 pub(super) struct ChannelTable {
     /// Size of the definitions so far, bytes.
-    bytes: usize,
+    bytes: u64,
     channels: Vec<Arc<Channel>>,
     by_topic: HashMap<String, Vec<u32>>,
     files: Vec<FileTable>,
@@ -134,9 +136,10 @@ impl ChannelTable {
     }
 
     /// Whether there is room for a definition, which takes it.
-    fn fits(bytes: &mut usize, body: &[u8]) -> bool {
-        let fits = *bytes + body.len() <= MOST_BYTES;
-        *bytes += if fits { body.len() } else { 0 };
+    fn fits(bytes: &mut u64, body: &[u8], entry_count: usize) -> bool {
+        let all = *bytes + body.len() as u64 + ENTRY_COST * (1 + entry_count as u64);
+        let fits = all <= MOST_BYTES;
+        *bytes = if fits { all } else { *bytes };
         fits
     }
 
@@ -165,8 +168,8 @@ impl ChannelTable {
                 return Received::Conflict;
             }
         }
-        if !Self::fits(&mut self.bytes, body) {
-            return Received::Broken;
+        if !Self::fits(&mut self.bytes, body, 0) {
+            return Received::TooLarge;
         }
         let schema = Arc::new(Schema {
             name: fields.name.to_owned(),
@@ -216,8 +219,8 @@ impl ChannelTable {
                 return Received::Conflict;
             }
         }
-        if !Self::fits(&mut self.bytes, body) {
-            return Received::Broken;
+        if !Self::fits(&mut self.bytes, body, channel.metadata.len()) {
+            return Received::TooLarge;
         }
         table
             .channels

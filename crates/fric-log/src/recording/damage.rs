@@ -32,6 +32,8 @@ pub enum DamageKind {
     ChunkRecords,
     /// A schema or channel record cannot be parsed.
     Definition,
+    /// A schema, channel or metadata record is beyond the 32 MiB that are read of them.
+    TooLarge,
     /// A schema or channel id is redefined with another content; messages that this makes ambiguous are not delivered.
     Conflict,
     /// Messages of an undefined channel; they are not delivered.
@@ -55,6 +57,7 @@ impl DamageKind {
             Self::ChunkCut => "a chunk that is cut off",
             Self::ChunkRecords => "a chunk with broken records",
             Self::Definition => "a broken schema or channel record",
+            Self::TooLarge => "a schema, channel or metadata record beyond the 32 MiB that are read of them",
             Self::Conflict => "a schema or channel id defined twice with different content",
             Self::UnknownChannel => "messages of an unknown channel",
             Self::DataChecksum => "a wrong checksum over all messages, some of which may be wrong",

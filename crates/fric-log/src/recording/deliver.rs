@@ -167,6 +167,7 @@ impl Recording {
             let kind = match received {
                 Received::Fine => continue,
                 Received::Broken => DamageKind::Definition,
+                Received::TooLarge => DamageKind::TooLarge,
                 Received::Conflict => DamageKind::Conflict,
             };
             self.add_damage(

@@ -49,14 +49,18 @@ pub(super) fn open_sources(files: Vec<SourceFile>) -> Result<Recording, Recordin
         let file = u32::try_from(place).unwrap_or(u32::MAX);
         for definition in scan.definitions.iter().chain(&scan.summary_definitions) {
             let received = channels.define(file, definition.opcode, &definition.body, Source::Scan, &mut Vec::new());
-            if received == Received::Broken {
-                scan.damage.add(DamagedPlace {
-                    kind: DamageKind::Definition,
-                    offset_bytes: definition.offset_bytes,
-                    lost_bytes: definition.body.len() as u64,
-                    log_time_nanos: None,
-                });
-            }
+            let kind = match received {
+                // A conflict is told where messages are delivered.
+                Received::Fine | Received::Conflict => continue,
+                Received::Broken => DamageKind::Definition,
+                Received::TooLarge => DamageKind::TooLarge,
+            };
+            scan.damage.add(DamagedPlace {
+                kind,
+                offset_bytes: definition.offset_bytes,
+                lost_bytes: definition.body.len() as u64,
+                log_time_nanos: None,
+            });
         }
         for mut segment in scan.segments {
             segment.file = file;

@@ -18,6 +18,10 @@ pub(super) const MESSAGE_FIELDS_LEN: usize = 22;
 const CHUNK_FIXED_LEN: u64 = 40;
 /// Length of a record's body that suffices to judge its structure.
 pub(super) const CHUNK_PREFIX_LEN: usize = 48;
+/// Greatest number of entries in the metadata of a channel or a metadata record; robots' logs have some dozens.
+const MOST_ENTRIES: usize = 1 << 16;
+/// What a record, or an entry of its metadata, takes in memory beside its own bytes, bytes.
+pub(super) const ENTRY_COST: u64 = 128;
 
 /// Takes little-endian fields from the front of a slice.
 pub(super) struct Fields<'a> {
@@ -71,6 +75,9 @@ impl<'a> Fields<'a> {
         let mut entries = Fields::new(self.block()?);
         let mut map = BTreeMap::new();
         while !entries.rest.is_empty() {
+            if map.len() == MOST_ENTRIES {
+                return None;
+            }
             let key = entries.text()?;
             let value = entries.text()?;
             if map.insert(key.to_owned(), value.to_owned()).is_some() {

@@ -33,12 +33,14 @@ pub enum SignalError {
     #[error(transparent)]
     Csv(#[from] CsvError),
     /// The recording has no cable signal.
-    #[error("the log has no messages on `{topic}`, the topic of the cable signals; {}", available(topics))]
+    #[error("the log has no messages on `{topic}`, the topic of the cable signals; {}", available(topics, *other_count))]
     NoCableTopic {
         /// The wanted topic.
         topic: String,
-        /// The existing topics.
+        /// The first of the existing topics.
         topics: Vec<String>,
+        /// Number of existing topics beyond these.
+        other_count: usize,
     },
     /// The recording has no cable signal, and the beginning of a file, which defines its channels, is lost.
     #[error(
@@ -125,9 +127,10 @@ impl fmt::Display for Between<'_> {
     }
 }
 
-fn available(topics: &[String]) -> String {
+fn available(topics: &[String], other_count: usize) -> String {
     if topics.is_empty() {
         return format!("it has no other topics either; {}", advice::OTHER);
     }
-    format!("it has {}. {}", topics.join(", "), advice::TOPIC)
+    let others = if other_count == 0 { String::new() } else { format!(" and {other_count} others") };
+    format!("it has {}{others}. {}", topics.join(", "), advice::TOPIC)
 }

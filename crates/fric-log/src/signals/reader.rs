@@ -1,5 +1,7 @@
 //! The stream of rows.
 
+use std::collections::BTreeSet;
+
 use fric_core::Sample;
 
 use super::channel::{ChannelReader, Rejection};
@@ -14,6 +16,9 @@ use super::track::Track;
 use super::{Role, SignalPaths, TrackCounts, WAIT_NANOS, WAITING_LIMIT};
 use crate::log::{Content, Log};
 use crate::recording::Message;
+
+/// Greatest number of topics that an error names.
+const MOST_LISTED: usize = 50;
 
 /// Reads the rows of a log.
 ///
@@ -408,14 +413,14 @@ impl SignalReader {
         let topic = self.topics.paths.get(Role::Cable).map_or_else(String::new, |path| path.topic.clone());
         if !self.topics.has_cable_messages {
             let channels = self.log.channels().iter();
-            let mut topics: Vec<_> = channels.map(|channel| channel.topic.clone()).filter(|it| *it != topic).collect();
-            topics.sort();
-            topics.dedup();
+            let topics: BTreeSet<_> = channels.map(|channel| &channel.topic).filter(|it| **it != topic).collect();
+            let other_count = topics.len().saturating_sub(MOST_LISTED);
+            let topics: Vec<_> = topics.into_iter().take(MOST_LISTED).cloned().collect();
             let beheaded = self.log.beheaded();
             if let Some(path) = beheaded.filter(|_| topics.is_empty() || self.log.lost_messages() > 0) {
                 return Err(SignalError::NoBeginning { topic, path: path.to_owned() });
             }
-            return Err(SignalError::NoCableTopic { topic, topics });
+            return Err(SignalError::NoCableTopic { topic, topics, other_count });
         }
         if self.tracks.cable.counts().message_count == 0 {
             let reason = self.first_problem(Role::Cable).unwrap_or("it is empty").to_owned();

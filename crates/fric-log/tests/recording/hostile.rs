@@ -136,7 +136,7 @@ fn definitions_beyond_any_robots_are_left_out() {
     let mut recording = open(&file_of(&chunks)).unwrap();
     assert_eq!(sequences(&read_all(&mut recording)), [3]);
     // Three of them are within 32 MiB.
-    assert_eq!(kinds(&recording), [DamageKind::Definition; 7]);
+    assert_eq!(kinds(&recording), [DamageKind::TooLarge; 7]);
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! What each kind of record adds to the result of a scan.
 
 use std::io;
+use std::sync::Arc;
 
 use super::{AttachmentPlace, DataEnd, Definition, Footer, Metadata, Scanner};
 use crate::recording::damage::DamageKind;
 use crate::recording::record::{
-    AttachmentFields, CHUNK_PREFIX_LEN, ChunkFields, Fields, MESSAGE_FIELDS_LEN, MessageFields, RECORD_HEADER_LEN,
-    RecordHeader, op, parse_footer, parse_metadata, parse_statistics,
+    AttachmentFields, CHUNK_PREFIX_LEN, ChunkFields, ENTRY_COST, Fields, MESSAGE_FIELDS_LEN, MessageFields,
+    RECORD_HEADER_LEN, RecordHeader, op, parse_footer, parse_metadata, parse_statistics,
 };
 use crate::recording::segment::Segment;
 use crate::recording::structure::{MessageBatch, looks_like_message_index};
@@ -15,8 +16,8 @@ use crate::recording::window::read_into;
 /// Minimum number of bytes of messages outside chunks that are examined together.
 const SEQUENCE_LEN: usize = 64 * 1024;
 
-/// Maximum size of a schema, channel or metadata record.
-const DEFINITION_LIMIT: u64 = 64 * 1024 * 1024;
+/// Size of all that is kept of a file's schema, channel, metadata and attachment records together, bytes; a robot's log has some hundred kilobytes of it.
+const KEPT_LIMIT: u64 = 32 << 20;
 
 /// Number of bytes of an attachment record that are read to find its name.
 const ATTACHMENT_PREFIX_LEN: usize = 64 * 1024;
@@ -115,14 +116,17 @@ impl Scanner<'_> {
         if !self.read_body(offset, header)? {
             return Ok(());
         }
-        let body: Box<[u8]> = self.buffer.as_slice().into();
-        if self.known.insert((header.opcode, body.clone())) {
-            let definition = Definition { opcode: header.opcode, body, offset_bytes: offset };
-            if is_summary {
-                self.found.summary_definitions.push(definition);
-            } else {
-                self.found.definitions.push(definition);
-            }
+        let body: Arc<[u8]> = self.buffer.as_slice().into();
+        let key = (header.opcode, Arc::clone(&body));
+        if self.known.contains(&key) || !self.keeps(offset, header, header.body_len) {
+            return Ok(());
+        }
+        self.known.insert(key);
+        let definition = Definition { opcode: header.opcode, body, offset_bytes: offset };
+        if is_summary {
+            self.found.summary_definitions.push(definition);
+        } else {
+            self.found.definitions.push(definition);
         }
         Ok(())
     }
@@ -130,12 +134,23 @@ impl Scanner<'_> {
     /// Reads a body into the buffer. If it is too large, records the damage and returns false.
     fn read_body(&mut self, offset: u64, header: RecordHeader) -> io::Result<bool> {
         let length = usize::try_from(header.body_len).ok();
-        let Some(length) = length.filter(|_| header.body_len <= DEFINITION_LIMIT) else {
-            self.place(DamageKind::Definition, offset, header.body_len + RECORD_HEADER_LEN);
+        let Some(length) = length.filter(|_| header.body_len <= KEPT_LIMIT) else {
+            self.place(DamageKind::TooLarge, offset, header.body_len + RECORD_HEADER_LEN);
             return Ok(false);
         };
         read_into(self.file, &mut self.buffer, offset + RECORD_HEADER_LEN, length)?;
         Ok(true)
+    }
+
+    /// Takes room for so many bytes of a record. If there is none, records the damage and returns false.
+    fn keeps(&mut self, offset: u64, header: RecordHeader, bytes: u64) -> bool {
+        let kept_bytes = self.kept_bytes + ENTRY_COST + bytes;
+        if kept_bytes > KEPT_LIMIT {
+            self.place(DamageKind::TooLarge, offset, header.body_len + RECORD_HEADER_LEN);
+            return false;
+        }
+        self.kept_bytes = kept_bytes;
+        true
     }
 
     fn accept_chunk(&mut self, offset: u64, header: RecordHeader, is_repaired: bool) -> io::Result<()> {
@@ -185,7 +200,9 @@ impl Scanner<'_> {
                 data_at: RECORD_HEADER_LEN + fields.data_at,
                 data_len: fields.data_len,
             };
-            self.found.attachments.push(place);
+            if self.keeps(offset, header, (place.name.len() + place.media_type.len()) as u64) {
+                self.found.attachments.push(place);
+            }
         } else {
             self.place(DamageKind::Definition, offset, header.body_len + RECORD_HEADER_LEN);
         }
@@ -197,7 +214,12 @@ impl Scanner<'_> {
             return Ok(());
         }
         match parse_metadata(&self.buffer) {
-            Some((name, entries)) => self.found.metadata.push(Metadata { name: name.to_owned(), entries }),
+            Some((name, entries)) => {
+                let metadata = Metadata { name: name.to_owned(), entries };
+                if self.keeps(offset, header, header.body_len + ENTRY_COST * metadata.entries.len() as u64) {
+                    self.found.metadata.push(metadata);
+                }
+            }
             None => self.place(DamageKind::Definition, offset, header.body_len + RECORD_HEADER_LEN),
         }
         Ok(())

@@ -2,7 +2,7 @@
 //!
 //! The scan reads record headers and definitions, not the content of chunks. Indexes in the file are skipped: they may be missing, wrong or newer
 //! than the data, and the scan finds the same without them. It keeps about 80 bytes per chunk, or per mebibyte of messages outside chunks;
-//! definitions are kept once each.
+//! definitions are kept once each, and no more of them than any robot's log has.
 
 mod accept;
 mod end;
@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
 use std::io;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::recording::damage::{DamageKind, DamagedPlace, FileDamage};
 use crate::recording::record::{Compression, RECORD_HEADER_LEN, RecordHeader, op};
@@ -28,7 +29,7 @@ const WAITING_GAPS: usize = 16;
 #[derive(Debug)]
 pub(super) struct Definition {
     pub(super) opcode: u8,
-    pub(super) body: Box<[u8]>,
+    pub(super) body: Arc<[u8]>,
     pub(super) offset_bytes: u64,
 }
 
@@ -98,7 +99,9 @@ struct Scanner<'a> {
     window: Window<'a>,
     found: FileScan,
     /// Known definitions, because they are often repeated.
-    known: HashSet<(u8, Box<[u8]>)>,
+    known: HashSet<(u8, Arc<[u8]>)>,
+    /// Size of what is kept of definitions, metadata and attachments, bytes.
+    kept_bytes: u64,
     /// Messages outside chunks that are being collected, with their count.
     run: Option<(Segment, u64)>,
     gaps: Vec<DamagedPlace>,
@@ -130,6 +133,7 @@ impl<'a> Scanner<'a> {
                 is_mcap: false,
             },
             known: HashSet::new(),
+            kept_bytes: 0,
             run: None,
             gaps: Vec::new(),
             checksum: Some(RunningChecksum::default()),
