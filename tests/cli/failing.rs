@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use tempfile::TempDir;
 
 use super::simulate::bench_robot;
-use super::support::{Place, Run, root, short_log};
+use super::support::{Place, Run, root, short_log, slow_robot};
 
 /// A command line, and the outputs it names.
 struct Case {
@@ -21,7 +21,7 @@ struct Case {
     outputs: &'static [&'static str],
 }
 
-const CASES: [Case; 6] = [
+const CASES: [Case; 15] = [
     Case {
         arguments: &["simulate", "--model", "robot.toml", "-o", "out", "--duration", "0.1", "--seed", "3"],
         outputs: &["out"],
@@ -36,9 +36,56 @@ const CASES: [Case; 6] = [
         outputs: &["out", "page", "json"],
     },
     Case { arguments: &["info", "log.mcap", "--json", "-"], outputs: &[] },
+    Case { arguments: &["convert", "log.mcap", "-o", "out"], outputs: &["out"] },
+    Case { arguments: &["init", "table.csv", "-o", "out"], outputs: &["out"] },
+    Case {
+        arguments: &["replay", "table.csv", "--model", "bench.toml", "-o", "out", "--json", "json"],
+        outputs: &["out", "json"],
+    },
+    Case {
+        arguments: &[
+            "excite",
+            "--model",
+            "slow.toml",
+            "-o",
+            "out",
+            "--preview",
+            "page",
+            "--box=-0.1,-0.08,-0.1,0.12,0.08,0.1",
+            "--max-speed-m-per-s",
+            "0.5",
+            "--max-acceleration-m-per-s2",
+            "6",
+            "--min-tension-n",
+            "2",
+            "--max-tension-n",
+            "25",
+        ],
+        outputs: &["out", "page"],
+    },
+    Case {
+        arguments: &["hysteresis", "crossing.mcap", "--report", "page", "--json", "json"],
+        outputs: &["page", "json"],
+    },
     Case {
         arguments: &["continuum", "calibrate", "loads.csv", "--model", "arm.toml", "-o", "out", "--json", "json"],
         outputs: &["out", "json"],
+    },
+    Case {
+        arguments: &["continuum", "track", "path.csv", "--model", "arm.toml", "-o", "out", "--json", "json"],
+        outputs: &["out", "json"],
+    },
+    Case {
+        arguments: &["continuum", "shape", "run.csv", "--model", "cal.toml", "--report", "page", "--json", "json"],
+        outputs: &["page", "json"],
+    },
+    Case {
+        arguments: &["continuum", "fit", "run.csv", "--model", "cal.toml", "-o", "out", "--parameters", "mu"],
+        outputs: &["out"],
+    },
+    Case {
+        arguments: &["discover", "run.csv", "--model", "cal.toml", "-o", "out", "--report", "page"],
+        outputs: &["out", "page"],
     },
 ];
 
@@ -68,8 +115,29 @@ fn inputs() -> &'static [(&'static str, Vec<u8>)] {
         place.run(&bench).succeeds();
         let arm = ["continuum", "simulate", "--model", "arm.toml", "-o", "run.csv", "--calibration", "loads.csv"];
         place.run(&arm).succeeds();
+        place.run(&["continuum", "calibrate", "loads.csv", "--model", "arm.toml", "-o", "cal.toml"]).succeeds();
+        place.write("slow.toml", slow_robot());
+        place.run(&["simulate", "--model", "slow.toml", "-o", "crossing.mcap", "--run", "crossing"]).succeeds();
+        let rows = (0..200).map(|row| format!("{},{},{}\n", f64::from(row) / 100.0, 5 + row % 7, f64::from(row) / 1e3));
+        place.write("table.csv", "time_s,winch.force_n,winch.length_m\n".to_owned() + &rows.collect::<String>());
+        place.write("path.csv", "time_s,bend_rad\n0,0.4\n0.5,0.9\n1,0.7\n");
         assert_eq!(place.read("log.mcap"), short_log());
-        ["robot.toml", "log.mcap", "bench.mcap", "arm.toml", "loads.csv"].map(|name| (name, place.read(name))).to_vec()
+        [
+            "robot.toml",
+            "log.mcap",
+            "bench.toml",
+            "bench.mcap",
+            "table.csv",
+            "crossing.mcap",
+            "slow.toml",
+            "arm.toml",
+            "cal.toml",
+            "run.csv",
+            "loads.csv",
+            "path.csv",
+        ]
+        .map(|name| (name, place.read(name)))
+        .to_vec()
     })
 }
 

@@ -54,6 +54,24 @@ fn an_interrupted_fit_leaves_nothing() {
     }
 }
 
+/// Where nothing looks for the first signal, as while stdout takes nothing more, the second one ends the process.
+#[test]
+fn a_second_signal_ends_at_once() {
+    let place = Place::empty();
+    place.write("arm.toml", super::continuum::prototype());
+    let simulate = ["continuum", "simulate", "--model", "arm.toml", "-o", "run.csv", "--calibration", "loads.csv"];
+    place.run(&simulate).succeeds();
+    place.run(&["continuum", "calibrate", "loads.csv", "--model", "arm.toml", "-o", "cal.toml"]).succeeds();
+    // More than a pipe holds.
+    let mut program = place.start(&["continuum", "shape", "run.csv", "--model", "cal.toml", "--json", "-"]);
+    program.prints();
+    program.signal(SIGTERM);
+    sleep(Duration::from_millis(500));
+    assert!(program.is_running());
+    program.signal(SIGTERM);
+    assert_eq!(program.end().status.code(), Some(1));
+}
+
 /// A second after the beginning it has read the log, and searches for several more.
 #[test]
 fn a_fit_interrupted_in_its_search_leaves_nothing() {

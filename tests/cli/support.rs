@@ -125,6 +125,17 @@ impl Running {
         nix::sys::signal::kill(process, signal).unwrap();
     }
 
+    /// Waits for the first byte on stdout.
+    #[cfg(unix)]
+    pub fn prints(&mut self) {
+        self.0.stdout.as_mut().unwrap().read_exact(&mut [0]).unwrap();
+    }
+
+    #[cfg(unix)]
+    pub fn is_running(&mut self) -> bool {
+        self.0.try_wait().unwrap().is_none()
+    }
+
     /// Closes the reading end of stdout.
     pub fn close_stdout(&mut self) {
         drop(self.0.stdout.take());

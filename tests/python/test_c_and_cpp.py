@@ -143,23 +143,23 @@ def test_the_tutorial_s_programs_print_what_the_model_s_equations_give(prefix, t
 
 
 STANDARDS = {
-    "fric.h": ("c", ["c99", "c11", "c17", "c2x"], ["gcc", "clang"], ""),
-    "fric.hpp": ("c++", ["c++17", "c++20", "c++2b"], ["g++", "clang++"], "-Wold-style-cast"),
+    "fric.h": ("c", ["c99", "c11", "c17", "c2x"], ""),
+    "fric.hpp": ("c++", ["c++17", "c++20", "c++2b"], "-Wold-style-cast"),
 }
 
 
 @pytest.mark.parametrize("header", STANDARDS)
-def test_headers_compile_without_a_warning(header):
-    language, standards, compilers, extra = STANDARDS[header]
-    tool("g++")
-    found = [compiler for compiler in compilers if shutil.which(compiler)]
-    assert found
+@pytest.mark.parametrize("package", ["g++", "clang"])
+def test_headers_compile_without_a_warning(package, header):
+    language, standards, extra = STANDARDS[header]
+    compiler = program(package)
+    if compiler is None:
+        pytest.skip(hint([package]))
     flags = f"{WARNINGS} {extra} -fsyntax-only".split()
     folder = ROOT / "crates/fric-capi/include"
-    for compiler in found:
-        for standard in standards:
-            source = f"#include <{header}>\n"
-            call(compiler, f"-std={standard}", *flags, f"-I{folder}", f"-x{language}", "-", input=source)
+    for standard in standards:
+        source = f"#include <{header}>\n"
+        call(compiler, f"-std={standard}", *flags, f"-I{folder}", f"-x{language}", "-", input=source)
 
 
 def test_a_zero_byte_in_a_text_of_cpp_is_refused(prefix, tmp_path):

@@ -8,10 +8,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use fric_core::robot::file::RobotFile;
-use fric_log::GREAT_INTERVAL_S;
 use fric_log::log::Log;
 use fric_log::output::OutputFile;
-use fric_log::signals::{Role, SignalPaths, SignalReader};
+use fric_log::recording::RecordingError;
+use fric_log::signals::{Role, SignalError, SignalPaths, SignalReader};
+use fric_log::{CsvError, GREAT_INTERVAL_S};
 
 use crate::arguments::InitArguments;
 use crate::failure::{Failure, Outcome};
@@ -61,7 +62,7 @@ fn parsed(text: &str) -> Outcome<RobotFile> {
 fn look_at_beginning(logs: &[PathBuf], draft: &mut Draft, has_columns: bool) -> Outcome {
     let is_usual = |of: &Beginning| of.interval_s < GREAT_INTERVAL_S;
     let beginning_of =
-        |draft: &Draft| Outcome::Ok(Beginning::of(Log::open(logs)?, &parsed(&draft.with_stand_ins().text())?));
+        |draft: &Draft| Outcome::Ok(Beginning::of(Log::open(logs)?, &parsed(&draft.with_stand_ins().text())?)?);
     let mut beginning = beginning_of(draft)?.filter(|of| of.interval_s < GREATEST_CYCLE_S);
     if let Some(slow) = beginning.as_ref().filter(|of| !is_usual(of))
         && (draft.time_states_its_unit() || SECONDS_SINCE_1970.contains(&slow.start_s))
@@ -92,23 +93,35 @@ struct Beginning {
 }
 
 impl Beginning {
-    /// Reads it; `None` if it has no two samples.
-    fn of(log: Log, robot: &RobotFile) -> Option<Self> {
-        let paths = SignalPaths::of_robot(robot).ok()?;
+    /// Reads it; `None` if it has no two samples, or none of this robot.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the log cannot be read.
+    fn of(log: Log, robot: &RobotFile) -> Result<Option<Self>, SignalError> {
+        let Ok(paths) = SignalPaths::of_robot(robot) else { return Ok(None) };
         let mut reader = SignalReader::new(log, paths, &robot.cable_names());
         let mut start_nanos = None;
         let (mut sum_n, mut count) = (0.0, 0.0);
         for _ in 0..MOST_ROWS {
-            let Ok(Some(row)) = reader.next_row() else { break };
+            let row = match reader.next_row() {
+                Ok(Some(row)) => row,
+                Err(
+                    error @ (SignalError::Recording(RecordingError::Read { .. })
+                    | SignalError::Csv(CsvError::Read { .. })),
+                ) => return Err(error),
+                Ok(None) | Err(_) => break,
+            };
             start_nanos.get_or_insert(row.stamp_nanos);
             for force_n in row.cables.iter().map(|cable| cable.sensor_force_n).filter(|force_n| force_n.is_finite()) {
                 sum_n += force_n.abs();
                 count += 1.0;
             }
         }
-        #[expect(clippy::cast_precision_loss, reason = "a time for comparison")]
-        let start_s = start_nanos? as f64 * 1e-9;
         let interval_s = reader.counts(Role::Cable).interval_nanos * 1e-9;
-        (interval_s > 0.0).then_some(Self { start_s, interval_s, mean_force_n: sum_n / count })
+        #[expect(clippy::cast_precision_loss, reason = "a time for comparison")]
+        let start_s = start_nanos.map(|nanos| nanos as f64 * 1e-9);
+        let beginning = |start_s| Self { start_s, interval_s, mean_force_n: sum_n / count };
+        Ok(start_s.filter(|_| interval_s > 0.0).map(beginning))
     }
 }
