@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._html import table as html_table
 from ._results.base import counted
 
 if TYPE_CHECKING:
@@ -39,17 +39,10 @@ def frame(log: Log, library: str) -> Any:
 def table(log: Log) -> str:
     """Returns the size of the log, its signals, and the range of each cable's signals as HTML."""
     known = [name for name in ("sensor_force_n", "length_m", "speed_m_per_s", "reference_force_n") if name in log]
-    head = "".join(f"<th>{name}</th>" for name in known)
-    rows = ""
-    for place, cable in enumerate(log.cable_names):
-        cells = "".join(f"<td>{_range(getattr(log, name)[:, place])}</td>" for name in known)
-        rows += f"<tr><th>{escape(cable)}</th>{cells}</tr>"
+    rows = ((cable, *(_range(getattr(log, name)[:, place]) for name in known)) for place, cable in enumerate(log.cable_names))
     duration_s = log.time_s[-1] if len(log) else 0.0
     signals = ", ".join(log) or "none"
-    return (
-        f"<p>{counted(len(log), 'row')}, {duration_s:.3f} s; signals: {signals}</p>"
-        f"<table><thead><tr><th>cable</th>{head}</tr></thead><tbody>{rows}</tbody></table>"
-    )
+    return f"<p>{counted(len(log), 'row')}, {duration_s:.3f} s; signals: {signals}</p>" + html_table(("cable", *known), rows)
 
 
 def _range(column: np.ndarray[Any, Any]) -> str:

@@ -89,6 +89,24 @@ fn a_late_reference_is_put_where_it_belongs() {
     assert!(page.contains("Faults of the recording") && page.contains("the reference comes late by"));
 }
 
+/// As from a computer of its own: every time counts as well as a few milliseconds, and without `--correct` it is told too.
+#[test]
+fn a_reference_that_is_seconds_late_is_told_and_found() {
+    let late = restamped(|nanos| nanos + 8_000_000_000);
+    let place = Place::empty();
+    place.write("log.mcap", &late);
+    let warned =
+        "the references of winch and other agree with the sensors' forces only if they are taken for 8.00 s earlier";
+    place.run(&["replay", "log.mcap"]).warns(&[warned, "--correct"]);
+    let (_, clean, _) = replay(clean(), &[]);
+    let (_, corrected, _) = replay(&late, &["--correct"]);
+    for (clean, corrected) in cables(&clean).iter().zip(cables(&corrected)) {
+        let delay_s = fault(corrected, "reference_delay")["delay_s"].as_f64().unwrap();
+        assert!((delay_s - 8.0).abs() < 1e-3, "{corrected}");
+        assert!(after_n(corrected) < 1.05 * after_n(clean), "{corrected} {clean}");
+    }
+}
+
 #[test]
 fn a_reference_by_another_clock_is_put_where_it_belongs() {
     let (_, clean, _) = replay(clean(), &[]);
@@ -113,7 +131,7 @@ fn a_fit_corrects_by_itself_and_says_so() {
     let (run, clean) = fit(clean());
     assert!(!run.stdout.contains("recording") && cables(&clean).iter().all(|cable| cable.get("faults").is_none()));
     // Friction fitted to a reference that is 120 ms late is far off.
-    for late_ms in [20_u32, 120] {
+    for late_ms in [20_u32, 120, 8000] {
         let (run, late) = fit(&restamped(|nanos| nanos + i64::from(late_ms) * 1_000_000));
         assert!(run.stdout.contains("recording: the reference comes late by"), "{run:#?}");
         for (clean, late) in cables(&clean).iter().zip(cables(&late)) {

@@ -128,6 +128,26 @@ def test_each_public_class_travels(name, examples):
         hash(one)
 
 
+# What a notebook shows by its `repr`: states, functions, flags, and what a file tells better.
+WITHOUT_A_TABLE = {"Compensator", "Manipulator", "ResidualFunction", "Snapshot", "StaticModel", "StaticSnapshot", "TendonRun", "Width"}
+
+
+@pytest.mark.parametrize("name", sorted(public_classes()))
+def test_what_tells_values_is_a_table_in_a_notebook(name, examples):
+    one = examples[name]
+    if isinstance(one, (BaseException, enum.Enum)) or name in WITHOUT_A_TABLE:
+        assert not hasattr(one, "_repr_html_")
+        return
+    page = one._repr_html_()
+    assert "<table>" in page and page.count("<tr>") == page.count("</tr>") > 0
+
+
+def test_texts_of_a_file_are_escaped_in_a_table():
+    robot = fric.Robot.from_toml(BENCH.replace("winch", "<b>"))
+    for one in (robot, robot.cables[0], fleet.LogFailure("<b>", "<b>")):
+        assert "&lt;b&gt;" in one._repr_html_() and "<b>" not in one._repr_html_()
+
+
 @pytest.mark.parametrize("made", [copy.copy, copy.deepcopy])
 def test_a_copy_of_a_table_belongs_to_another_robot(made):
     robot = fric.Robot.from_toml(BENCH)

@@ -25,6 +25,7 @@ pub mod errors;
 pub mod excite;
 pub mod fit;
 pub mod hysteresis;
+mod lateness;
 pub mod random;
 pub mod replay;
 mod samples;

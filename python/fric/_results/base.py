@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
+from .. import _html
 from .._arguments import must_be
 from .._errors import ConfigError
 from .._fric import _unknown_name
@@ -46,9 +47,14 @@ class Value:
     # Arrays have no hash.
     __hash__ = None  # type: ignore[assignment]
 
+    def _texts(self) -> list[tuple[str, str]]:
+        return [(one.name, _text(getattr(self, one.name))) for one in fields(self) if one.repr]
+
     def __repr__(self) -> str:
-        parts = [f"{one.name}={_text(getattr(self, one.name))}" for one in fields(self) if one.repr]
-        return f"{type(self).__name__}({', '.join(parts)})"
+        return f"{type(self).__name__}({', '.join(map('='.join, self._texts()))})"
+
+    def _repr_html_(self) -> str:
+        return _html.fields(type(self).__name__, self._texts())
 
 
 @dataclass(frozen=True, eq=False, repr=False)

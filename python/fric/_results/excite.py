@@ -61,7 +61,7 @@ class ExciteResult(Value):
         return self._summary
 
     def _repr_html_(self) -> str:
-        return f"<p>{escape(self.robot)}: {escape(self._summary)}</p>"
+        return f"<p>{escape(self.robot)}: {escape(self._summary)}</p>" + super()._repr_html_()
 
     @classmethod
     def _of(

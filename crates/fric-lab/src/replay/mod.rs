@@ -15,6 +15,7 @@ use fric_core::{AnyCompensator, CableOutput, CableParams, CableStatus, ParamErro
 
 use crate::clock::Clock;
 use crate::fit::readiness::Tension;
+use crate::lateness::Lateness;
 use crate::set_up::{SetUp, Signals};
 use crate::weight::{self, Body};
 
@@ -110,6 +111,8 @@ pub struct Replay {
     /// `None` without mass or geometry, and after the first measured wrench.
     by_mass: Option<ByMass>,
     signals: Signals,
+    /// Of each cable's reference behind its compensated force.
+    lateness: Vec<Lateness>,
     cycle_count: u64,
     cycle_s: f64,
     clock: Clock,
@@ -187,6 +190,7 @@ impl Replay {
             wrench_after: WrenchErrors::default(),
             by_mass: ByMass::new(robot),
             signals: Signals::new(robot),
+            lateness: vec![Lateness::default(); robot.cables().len()],
             cycle_count: 0,
             cycle_s: robot.cycle_s(),
             clock: Clock::new(robot.cycle_s()),
@@ -216,8 +220,8 @@ impl Replay {
             by_mass.add(sample.stamp_nanos, sample.pose.filter(Pose::is_usable), wrenches);
         }
         let outputs = self.compensator.outputs();
-        let cables = self.cables.iter_mut().zip(sample.cables).zip(outputs).zip(sample.reference_force_n);
-        for (((errors, input), output), reference_n) in cables {
+        let cables = self.cables.iter_mut().zip(&mut self.lateness).zip(sample.cables).zip(outputs);
+        for ((((errors, lateness), input), output), reference_n) in cables.zip(sample.reference_force_n) {
             errors.tension.add(input.sensor_force_n);
             errors.flagged_count += u64::from(!output.status.is_ok());
             errors.flags |= output.status.bits();
@@ -232,6 +236,7 @@ impl Replay {
                 errors.set_up.start();
             }
             errors.set_up.add(input.length_m, *reference_n, forces_n);
+            lateness.add(sample.stamp_nanos, [output.force_at_platform_n, *reference_n]);
             errors.before_n.add(output.frictionless_n - reference_n);
             errors.after_n.add(output.force_at_platform_n - reference_n);
         }

@@ -5,6 +5,7 @@ use fric_core::robot::file::{CableTable, RobotFile};
 
 use super::Replay;
 use crate::fit::readiness::{NEGATIVE_ADVICE, NEGATIVE_FORCE, without_reference};
+use crate::lateness::{self, Lateness};
 use crate::set_up;
 use crate::weight::NEVER_QUIET;
 
@@ -39,6 +40,8 @@ impl Replay {
         }
         warnings.extend(self.cable_warnings(robot));
         warnings.extend(self.signals.warnings(&robot.cable_names()));
+        let late_s = self.lateness.iter().map(Lateness::seconds);
+        warnings.extend(lateness::warnings(robot.cable_names().into_iter().zip(late_s)));
         let set_ups = self.cables().iter().map(|cable| cable.set_up);
         warnings.extend(set_up::warnings(robot.cable_names().into_iter().zip(set_ups)));
         warnings

@@ -155,6 +155,11 @@ impl Robot {
         format!("<Robot {:?}: {cables}, cycle {} s>", self.name(), self.cycle_s())
     }
 
+    /// The cables as a table, for notebooks.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("fric._html")?.call_method1("robot", (slf,))
+    }
+
     /// Pickles, and copies, the text of its file.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> Outcome<(Bound<'py, PyAny>, (String,))> {
         let class: Bound<'py, PyType> = slf.get_type();

@@ -152,6 +152,17 @@ macro_rules! table {
             pub(super) fn new(place: Place) -> Self {
                 Self(place)
             }
+
+            /// Returns the keys that are set, and their values in the words of the file.
+            fn texts(&self, py: Python<'_>) -> Outcome<Vec<(&'static str, String)>> {
+                let mut texts = Vec::new();
+                for key in Self::KEYS.all {
+                    if let Some(value) = self.0.value(py, key)? {
+                        texts.push((*key, value.to_string()));
+                    }
+                }
+                Ok(texts)
+            }
         }
 
         #[pymethods]
@@ -180,13 +191,13 @@ macro_rules! table {
             }
 
             fn __repr__(&self, py: Python<'_>) -> Outcome<String> {
-                let mut parts = Vec::new();
-                for key in Self::KEYS.all {
-                    if let Some(value) = self.0.value(py, key)? {
-                        parts.push(format!("{key}={value}"));
-                    }
-                }
+                let parts: Vec<_> = self.texts(py)?.iter().map(|(key, value)| format!("{key}={value}")).collect();
                 Ok(format!("{}({})", Self::KEYS.class, parts.join(", ")))
+            }
+
+            /// Its keys and values as a table, for notebooks.
+            fn _repr_html_<'py>(&self, py: Python<'py>) -> Outcome<Bound<'py, PyAny>> {
+                Ok(py.import("fric._html")?.call_method1("fields", (Self::KEYS.class, self.texts(py)?))?)
             }
 
             fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> Outcome<bool> {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use fric_lab::discover::result::{DiscoverResult, EffectResult, TriedResult, UnexplainedResult};
 use fric_lab::errors::ForceError;
 use fric_lab::fit::HALF_INTERVAL;
-use fric_lab::text::{quantity, table, wrapped};
+use fric_lab::text::{listed, quantity, table, wrapped};
 
 use super::result::{Manipulator, TendonMarkers};
 
@@ -65,9 +65,9 @@ pub fn describe(result: &DiscoverResult<Manipulator>) -> String {
         let markers = tendon.markers.as_ref().map_or_else(|| WITHOUT_MARKERS.to_owned(), TendonMarkers::sentence);
         text += "\n";
         text += &wrapped("markers: ", &markers);
-        for tried in &tendon.tried {
+        for tried in tried_in_words(&tendon.tried) {
             text += "\n";
-            text += &wrapped("not named: ", &tried_in_words(tried));
+            text += &wrapped("not named: ", &tried);
         }
         if let Some(kept) = &tendon.kept {
             text += "\n";
@@ -102,15 +102,20 @@ impl TendonMarkers {
     }
 }
 
-/// Returns a candidate that does not suffice, as a sentence.
+/// Returns the candidates that do not suffice, a sentence for those of one kind and reason that follow one another.
 #[must_use]
-pub fn tried_in_words(tried: &TriedResult) -> String {
-    let mut text = tried.kind.to_owned();
-    for (name, value) in tried.parameters.iter().flat_map(|parameters| &parameters.0) {
-        // Writing to a String cannot fail.
-        let _ = write!(text, " at {name} {value}");
-    }
-    format!("{text}: {}.", tried.reason)
+pub fn tried_in_words(tried: &[TriedResult]) -> Vec<String> {
+    let is_alike = |one: &TriedResult, other: &TriedResult| (one.kind, &one.reason) == (other.kind, &other.reason);
+    tried
+        .chunk_by(is_alike)
+        .map(|alike| {
+            let parameters = || alike.iter().filter_map(|tried| tried.parameters.as_ref()).flat_map(|one| &one.0);
+            let places: Vec<String> = parameters().map(|(_, place)| place.to_string()).collect();
+            let at =
+                parameters().next().map_or_else(String::new, |(name, _)| format!(" at {name} {}", listed(&places)));
+            alike.first().map_or_else(String::new, |first| format!("{}{at}: {}.", first.kind, first.reason))
+        })
+        .collect()
 }
 
 /// Returns the rest that no effect explains, in sentences.

@@ -131,7 +131,7 @@ fn fit_group(
     let stop = progress.stop_flag();
     let retimed = |(cable, (fit, left_n)): (usize, (&CableFit, &Vec<f64>))| -> Option<timing::Retimed> {
         let record = measurements.cable(measurements.held().start + cable)?;
-        if !timing::may_be_off(&record, left_n) {
+        if !timing::may_be_off(&record, left_n, stop) {
             return None;
         }
         // Friction fitted to a late reference is biased, the given one may be a guess.

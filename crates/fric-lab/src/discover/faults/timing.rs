@@ -20,6 +20,7 @@ use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::projection::{Columns, Signals, visit_less_projection};
 use crate::discover::workbench::{Model, Trial, Workbench};
 use crate::fit::{CableRecord, Parameter, Row};
+use crate::lateness::Lateness;
 use crate::samples::interpolated::measured;
 use crate::samples::split::{Block, split};
 
@@ -40,6 +41,10 @@ const SUSPICIOUS_SHARE: f64 = 0.05 * LEAST_GAIN;
 
 /// Maximum skew. Quartz clocks agree to 1e-4, loops that are timed by software to a hundredth; what goes faster apart is no clock.
 const MOST_SKEW: f64 = 0.02;
+
+/// A reference that is early by less may be right and the sensor behind it: an amplifier's filter takes no longer, s. A reference that is early by more is
+/// moved at once.
+const LONGEST_LAG_S: f64 = 1.0;
 
 /// A gap is longer than this many usual intervals, as where the signals of a log are joined.
 const GAP_RATIO: f64 = 10.0;
@@ -102,12 +107,52 @@ const LINE_REACH: usize = 2;
 const SPLINE_REACH: usize = 3;
 
 /// Returns the cable's references at their correct times, and the fault to report. Returns `None` if the time is right or cannot be
-/// determined, for instance with a model without friction.
+/// determined, for instance with a model without friction. A reference that is off by more than its own changes last has no part in the residual that goes
+/// with its rate: it is first moved to where it goes with the sensor's force, to within a sample.
 pub fn retimed(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
     // A model without friction leaves all of the friction in the residual, which has rates of its own.
     if record.reference_is_known || record.params.friction().mu <= 0.0 {
         return None;
     }
+    let Some(late_s) = far_off_s(record, stop) else { return near_its_time(record, stop) };
+    let moved_n = shifted(record, Shift { delay_s: late_s, skew: 0.0 });
+    let Some(mut retimed) = near_its_time(&record.with_references(&moved_n), stop) else {
+        let fault = RecordingFault {
+            fault: Fault::ReferenceDelay,
+            parameters: vec![("delay_s", late_s)],
+            intervals_s: Vec::new(),
+        };
+        return Some(Retimed { references_n: moved_n, noise_reach: LINE_REACH, fault });
+    };
+    // Interpolated twice.
+    retimed.noise_reach += 1;
+    for (name, value) in &mut retimed.fault.parameters {
+        *value += if *name == "delay_s" { late_s } else { 0.0 };
+    }
+    Some(retimed)
+}
+
+/// Returns by how much the reference of a single log is late, in whole sample intervals, s, if that is far more than the rest of this module finds.
+fn far_off_s(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<f64> {
+    if record.logs().count() != 1 {
+        return None;
+    }
+    // Beside a reference of 0 the residual is the model's force, also where the reference is unknown.
+    let (nothing_n, counts) = (vec![0.0; record.rows.len()], vec![true; record.rows.len()]);
+    let bench =
+        Workbench { record: record.with_references(&nothing_n), blocks: &[], counts: &counts, measured: &counts, stop };
+    let mut lateness = Lateness::default();
+    let forces_n = bench.residuals_n(&record.params.values());
+    for ((place, force_n), reference_n) in forces_n.into_iter().enumerate().zip(record.references_n) {
+        #[expect(clippy::cast_possible_truncation, reason = "a time in ns")]
+        lateness.add((record.time_s(place) * 1e9) as i64, [force_n, *reference_n]);
+    }
+    let late_s = lateness.seconds().filter(|late_s| !(-LONGEST_LAG_S..0.0).contains(late_s))?;
+    Some((late_s / record.interval_s).round() * record.interval_s)
+}
+
+/// The same for a reference that is off by less than its changes last.
+fn near_its_time(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<Retimed> {
     let (blocks, measured) = (split(record), measured(record));
     let (counts, start) = given_to(record, stop)?;
     let start = with_zero(record, start);
@@ -181,9 +226,9 @@ fn with_zero(record: &CableRecord<'_>, mut model: Model) -> Model {
     model
 }
 
-/// Whether a fit's residual, N, is correlated with the rate of the reference at all, constantly or growing with time. This check is far cheaper than
-/// [`retimed`].
-pub fn may_be_off(record: &CableRecord<'_>, left_n: &[f64]) -> bool {
+/// Whether a fit's residual, N, is correlated with the rate of the reference at all, constantly or growing with time, or the reference is far off. This check
+/// is far cheaper than [`retimed`].
+pub fn may_be_off(record: &CableRecord<'_>, left_n: &[f64], stop: &AtomicBool) -> bool {
     let rates = rates(record, record.references_n);
     let (mut left, mut products, mut squares) = (0.0, [0.0; 2], [0.0; 2]);
     for (place, (left_n, rate)) in left_n.iter().zip(&rates).enumerate() {
@@ -197,7 +242,7 @@ pub fn may_be_off(record: &CableRecord<'_>, left_n: &[f64]) -> bool {
         }
     }
     let explains = |part: usize| products[part] * products[part] > SUSPICIOUS_SHARE * left * squares[part];
-    left > 0.0 && (explains(0) || explains(1))
+    left > 0.0 && (explains(0) || explains(1) || far_off_s(record, stop).is_some())
 }
 
 /// Returns the time of a sample, s since the first sample of its log.
@@ -251,7 +296,7 @@ impl<'a> Case<'a> {
                     let time_constant_s = (-shift.delay_s).max(f64::MIN_POSITIVE);
                     behind_lag(&self.record, self.record.references_n, |past_s| (-past_s / time_constant_s).exp())
                 }
-                Kind::Delay | Kind::Skew => self.shifted(shift),
+                Kind::Delay | Kind::Skew => shifted(&self.record, shift),
             };
             trial = self.bench(&references_n).try_one(&trial.model());
             let last = |(start, log): (usize, &[Row])| seconds(&self.record, (start + log.len()).saturating_sub(1));
@@ -308,33 +353,31 @@ impl<'a> Case<'a> {
             }
         })
     }
+}
 
-    /// Returns the references interpolated from later samples; NaN past the ends of each log. Each value gets the same part of the samples' noise: a line
-    /// does this for a delay, which falls at one place between two regular samples, and a quadratic B-spline nearly does for a skew, which wanders from one
-    /// sample to the next. With a line what is left would be loud wherever the skew falls on a sample.
-    fn shifted(&self, shift: Shift) -> Vec<f64> {
-        let record = &self.record;
-        let mut references_n = record.references_n.to_vec();
-        for (start, log) in record.logs() {
-            let given_n = record.references_n.get(start..start + log.len()).unwrap_or_default();
-            let times_s: Vec<f64> = (start..start + log.len()).map(|place| record.time_s(place)).collect();
-            let first_s = times_s.first().copied().unwrap_or(0.0);
-            let mut of_log = references_n.iter_mut().skip(start);
-            let mut given_n = given_n.iter().as_slice();
-            // Where a clock was set back the times begin anew.
-            for times_s in times_s.chunk_by(|one, next| one <= next) {
-                let (of_stretch, rest) = given_n.split_at(times_s.len());
-                given_n = rest;
-                let mut knots =
-                    Knots { times_s, given_n: of_stretch, longest_s: GAP_RATIO * record.interval_s, before: 0 };
-                for (time_s, reference_n) in times_s.iter().zip(&mut of_log) {
-                    let later_s = time_s + shift.delay_s + shift.skew * (time_s - first_s);
-                    *reference_n = if shift.skew == 0.0 { knots.on_line(later_s) } else { knots.on_spline(later_s) };
-                }
+/// Returns the references interpolated from later samples; NaN past the ends of each log. Each value gets the same part of the samples' noise: a line
+/// does this for a delay, which falls at one place between two regular samples, and a quadratic B-spline nearly does for a skew, which wanders from one
+/// sample to the next. With a line what is left would be loud wherever the skew falls on a sample.
+fn shifted(record: &CableRecord<'_>, shift: Shift) -> Vec<f64> {
+    let mut references_n = record.references_n.to_vec();
+    for (start, log) in record.logs() {
+        let given_n = record.references_n.get(start..start + log.len()).unwrap_or_default();
+        let times_s: Vec<f64> = (start..start + log.len()).map(|place| record.time_s(place)).collect();
+        let first_s = times_s.first().copied().unwrap_or(0.0);
+        let mut of_log = references_n.iter_mut().skip(start);
+        let mut given_n = given_n.iter().as_slice();
+        // Where a clock was set back the times begin anew.
+        for times_s in times_s.chunk_by(|one, next| one <= next) {
+            let (of_stretch, rest) = given_n.split_at(times_s.len());
+            given_n = rest;
+            let mut knots = Knots { times_s, given_n: of_stretch, longest_s: GAP_RATIO * record.interval_s, before: 0 };
+            for (time_s, reference_n) in times_s.iter().zip(&mut of_log) {
+                let later_s = time_s + shift.delay_s + shift.skew * (time_s - first_s);
+                *reference_n = if shift.skew == 0.0 { knots.on_line(later_s) } else { knots.on_spline(later_s) };
             }
         }
-        references_n
     }
+    references_n
 }
 
 /// The references of a stretch of a log and their times, which do not decrease.

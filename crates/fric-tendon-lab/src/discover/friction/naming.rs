@@ -301,7 +301,7 @@ fn clear(case: &Case<'_>, mut now: Fit, mut findings: Vec<Finding>, tried: &mut 
         effect: finding.effect,
         delta_bic: finding.delta_bic,
         rms_n: rms_n(&finding.fit),
-        reason: "its μ is not clear from that of the others: beyond its 95 % interval and by 30 %".to_owned(),
+        reason: "the μ would have to be off that of the others beyond its 95 % interval and by 30 %".to_owned(),
     }));
     if !findings.iter().any(is_hole)
         && let Some(shared) = with_shared_mu(case, &now.model)

@@ -148,7 +148,7 @@ pub fn discovery(found: &TendonDiscovery, provenance: &Provenance) -> String {
                 }
                 @if !effect.alike.is_empty() { p.soft { "Or " (alternatives(effect)) } }
             }
-            @for tried in &tendon.tried { p.soft { "Not named: " (tried_in_words(tried)) } }
+            @for tried in tried_in_words(&tendon.tried) { p.soft { "Not named: " (tried) } }
             @if let Some(kept) = &tendon.kept { p.soft { "Kept: " (kept) } }
             @if let Some(rest) = &tendon.unexplained { p.unexplained { (rest_in_words(rest)) } }
         }
