@@ -320,8 +320,11 @@ fn memory_m(cable: &CableParams, force_n: f64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a handful")]
     let of_drag_m = cable.pulley_count() as f64 * effect(cable, "bearing_drag", "drag_n") / sigma_n_per_m;
     let nonlinear = if acts(cable, Effect::LoadNonlinearity) { 4.0 } else { 1.0 };
+    let of_age_m = if acts(cable, Effect::DwellStiction) { effect(cable, "dwell_stiction", "distance_m") } else { 0.0 };
     // What moves the winch through its play moves no cable.
-    2.0 * sensor_share(cable) * (nonlinear * of_load_m + of_drag_m) + effect(cable, "gear_backlash", "play_m")
+    2.0 * sensor_share(cable) * (nonlinear * of_load_m + of_drag_m)
+        + of_age_m
+        + effect(cable, "gear_backlash", "play_m")
 }
 
 /// How often what rubs at the sensor pulley counts in the tension, at least once: the more, the less it is wrapped.
