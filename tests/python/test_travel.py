@@ -129,7 +129,7 @@ def test_each_public_class_travels(name, examples):
 
 
 # What a notebook shows by its `repr`: states, functions, flags, and what a file tells better.
-WITHOUT_A_TABLE = {"Compensator", "Manipulator", "ResidualFunction", "Snapshot", "StaticModel", "StaticSnapshot", "TendonRun", "Width"}
+WITHOUT_A_TABLE = {"Compensator", "Manipulator", "ResidualFunction", "Snapshot", "StaticModel", "StaticSnapshot", "TendonRun"}
 
 
 @pytest.mark.parametrize("name", sorted(public_classes()))
