@@ -50,6 +50,19 @@ pub fn greatest_mu(cable: &CableParams) -> f64 {
     (1..=cable.pulley_count()).fold(0.0, |greatest, pulley| greatest_mu_at(cable, pulley).max(greatest))
 }
 
+/// By how much what the contacts of a chain are apart may grow in sum: what one is apart is load of those behind it, whose sliding friction goes with the
+/// load, `Π(1 + df/dT)`.
+pub fn chain_growth(cable: &CableParams) -> f64 {
+    let exponent = effect(cable, "load_nonlinearity", "exponent");
+    // Where μ goes with the load, it may go up to its limit.
+    let mu = if exponent == 1.0 { greatest_mu(cable).min(core_mu_limit(cable)) } else { core_mu_limit(cable) };
+    let growth = |wrap_rad: Option<f64>| {
+        let half = mu * (0.5 * wrap_rad.unwrap_or(PI)).sin();
+        1.0 + exponent.max(1.0) * 2.0 * half / (1.0 - half).max(0.05)
+    };
+    cable.fixed_wraps_rad().map(growth).product()
+}
+
 /// cos α₁ of the sensor pulley; 0 for a sensor in line.
 pub fn sensor_cos(cable: &CableParams) -> f64 {
     cable.sensor_wrap_rad().map_or(0.0, f64::cos)

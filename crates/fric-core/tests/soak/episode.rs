@@ -5,7 +5,7 @@ use fric_core::robot::{MonitorOptions, Presliding};
 use fric_core::{CableInput, CableParams, CableStatus, Compensator, CycleInput, CycleOutput, Pose};
 
 use super::Tally;
-use super::bound::{effect, greatest_mu, sensor_cos};
+use super::bound::{chain_growth, effect, greatest_mu, sensor_cos};
 use super::fault::{CycleFault, Faults};
 use super::motion::{Motion, RECOVERY_CYCLES};
 use super::robot::{Robot, once_in};
@@ -248,7 +248,7 @@ impl Episode {
             // more at a sensor pulley, the less it is wrapped.
             let (of_last, most) = match params.presliding() {
                 Presliding::Lumped => (true, 1.0 + 1e-9),
-                Presliding::PerPulley => (false, 2.0 * sensor_share(params)),
+                Presliding::PerPulley => (false, chain_growth(params).max(2.0) * sensor_share(params)),
             };
             if reference_n.is_some_and(|reference_n| apart_n > reference_n * most + 1e-9 * scale_n) {
                 return Err(format!(
