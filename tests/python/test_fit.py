@@ -1,7 +1,6 @@
 """Fits from Python, by the command line, and by other people's optimisers: the same numbers."""
 
 import json
-import os
 import subprocess
 import threading
 import time
@@ -12,7 +11,7 @@ import lmfit
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
-from support import BENCH, PRESS_SOON, ROBOT, ROOT, printed, run, without_origin
+from support import BENCH, PRESS_SOON, PROGRAM, ROBOT, printed, run, without_origin
 
 
 @pytest.fixture(scope="module")
