@@ -410,6 +410,20 @@ fn a_drift_begins_where_it_is_switched_on() {
     }
 }
 
+/// Its clock is that of the run, not of the last change.
+#[test]
+fn a_drift_goes_on_over_a_change() {
+    let drift = [(Effect::SensorDrift, "rate_n_per_s", 0.5)];
+    for presliding in FORMS {
+        let with = robot_with(presliding, &drift);
+        let changed = run_with_changes(with.clone(), &[(2000, &with)], 2100, 10);
+        let unchanged = run_with_changes(with, &[], 2100, 1);
+        for (cycle, (one, other)) in changed.iter().zip(&unchanged).enumerate() {
+            assert!(gap_n(one, other) < 1e-9, "{presliding:?}, cycle {cycle}");
+        }
+    }
+}
+
 /// A blend of one cycle is a change at once: what then changes is what the effect is good for, and no leftover.
 #[test]
 fn inertia_switched_on_again_gives_no_jump() {
