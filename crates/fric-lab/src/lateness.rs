@@ -288,8 +288,8 @@ mod tests {
             fine[place]
         };
         let mut both = Lateness::default();
-        for sample in 0..(40.0 / interval_s) as u32 {
-            let time_s = f64::from(sample) * interval_s;
+        let times_s = (0..).map(|sample: u32| f64::from(sample) * interval_s).take_while(|time_s| *time_s < 40.0);
+        for time_s in times_s {
             let force_n = load(time_s) + 3.0 * (0.7 * time_s).sin().signum() + noise * normal();
             #[expect(clippy::cast_possible_truncation, reason = "a time in ns")]
             both.add((time_s * 1e9) as i64, [1.03 * force_n + 4.0, load(time_s - late_s) + noise * normal()]);
