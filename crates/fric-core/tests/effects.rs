@@ -174,6 +174,54 @@ fn behind_a_play_a_ripple_follows_the_cable() {
     }
 }
 
+/// The friction behind a play is that of a cable without play, whose winch moves and rests as this cable does.
+#[test]
+fn behind_a_play_friction_is_that_of_the_cables_own_motion() {
+    for presliding in FORMS {
+        let mut behind = robot(&GUIDE, presliding, WET, &[("gear_backlash", "play_m", 0.002)]);
+        let mut plain = robot(&GUIDE, presliding, WET, &[]);
+        let (mut winch_m, mut cable_m) = (1.0_f64, 1.0_f64);
+        let mut rested = 0;
+        for cycle in 0..4000_u32 {
+            let speed = 0.05 * (0.004 * f64::from(cycle)).sin();
+            winch_m += 0.001 * speed;
+            let next_m = cable_m.clamp(winch_m - 0.001, winch_m + 0.001);
+            let of_cable = if (next_m - cable_m).abs() > 0.0 { speed } else { 0.0 };
+            rested += u32::from(of_cable == 0.0);
+            cable_m = next_m;
+            let expected_n = feed(&mut plain, 20.0, cable_m, of_cable);
+            assert_near(feed(&mut behind, 20.0, winch_m, speed), expected_n, 1e-9);
+        }
+        assert!((100..2000).contains(&rested), "{rested}");
+    }
+}
+
+/// What is known two cycles too late: the force is that of one step ahead, by the parabola through the motion now, two and four cycles ago, from the state
+/// that the known motion leaves.
+#[test]
+fn a_lead_is_one_step_ahead_of_what_is_known() {
+    for presliding in FORMS {
+        let mut leading = robot(&GUIDE, presliding, DRY, &[("time_delay", "delay_s", -0.002)]);
+        let mut known = robot(&GUIDE, presliding, DRY, &[]);
+        // Faster and faster from rest, through all of the presliding.
+        let length_m = |cycle: u32| 1.0 + 2e-9 * f64::from(cycle).powi(3);
+        let speed = |cycle: u32| 6e-6 * f64::from(cycle).powi(2);
+        let mut least_n = f64::INFINITY;
+        for cycle in 0..40 {
+            let led_n = feed(&mut leading, 20.0, length_m(cycle), speed(cycle));
+            let known_n = feed(&mut known, 20.0, length_m(cycle), speed(cycle));
+            if cycle < 8 {
+                continue;
+            }
+            let ahead_m = 3.0 * length_m(cycle) - 3.0 * length_m(cycle - 2) + length_m(cycle - 4);
+            let ahead_n = feed(&mut known.clone(), 20.0, ahead_m, speed(cycle));
+            assert_near(led_n, ahead_n, 1e-9);
+            least_n = least_n.min(ahead_n - known_n);
+        }
+        assert!(least_n > 0.0, "{least_n}");
+    }
+}
+
 /// Of two ripples of a kind, forces add and factors multiply.
 #[test]
 fn two_ripples_of_a_kind_each_do_what_their_equation_says() {
