@@ -197,17 +197,19 @@ fn behind_a_play_friction_is_that_of_the_cables_own_motion() {
 }
 
 /// What is known two cycles too late: the force is that of one step ahead, by the parabola through the motion now, two and four cycles ago, from the state
-/// that the known motion leaves.
+/// that the known motion leaves; through a play as well.
 #[test]
 fn a_lead_is_one_step_ahead_of_what_is_known() {
-    for presliding in FORMS {
-        let mut leading = robot(&GUIDE, presliding, DRY, &[("time_delay", "delay_s", -0.002)]);
-        let mut known = robot(&GUIDE, presliding, DRY, &[]);
-        // Faster and faster from rest, through all of the presliding.
+    let play = [("gear_backlash", "play_m", 5e-5)];
+    for (presliding, also) in FORMS.into_iter().flat_map(|presliding| [(presliding, &[][..]), (presliding, &play)]) {
+        let late = [&[("time_delay", "delay_s", -0.002)], also].concat();
+        let mut leading = robot(&GUIDE, presliding, DRY, &late);
+        let mut known = robot(&GUIDE, presliding, DRY, also);
+        // Faster and faster from rest, through the play and all of the presliding.
         let length_m = |cycle: u32| 1.0 + 2e-9 * f64::from(cycle).powi(3);
         let speed = |cycle: u32| 6e-6 * f64::from(cycle).powi(2);
-        let mut least_n = f64::INFINITY;
-        for cycle in 0..40 {
+        let mut greatest_n = 0.0_f64;
+        for cycle in 0..60 {
             let led_n = feed(&mut leading, 20.0, length_m(cycle), speed(cycle));
             let known_n = feed(&mut known, 20.0, length_m(cycle), speed(cycle));
             if cycle < 8 {
@@ -216,9 +218,9 @@ fn a_lead_is_one_step_ahead_of_what_is_known() {
             let ahead_m = 3.0 * length_m(cycle) - 3.0 * length_m(cycle - 2) + length_m(cycle - 4);
             let ahead_n = feed(&mut known.clone(), 20.0, ahead_m, speed(cycle));
             assert_near(led_n, ahead_n, 1e-9);
-            least_n = least_n.min(ahead_n - known_n);
+            greatest_n = greatest_n.max(ahead_n - known_n);
         }
-        assert!(least_n > 0.0, "{least_n}");
+        assert!(greatest_n > 0.01, "{greatest_n}");
     }
 }
 
