@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use fric_core::pulley::{
     limit_traction, sensor_gains, sliding_friction, sliding_gains, slipping_sensor, traction_ratio, wrap_factor,
 };
-use fric_core::robot::{CableOptions, FrictionOptions, Presliding, PulleyOptions};
+use fric_core::robot::{CableOptions, FrictionOptions, MAX_PULLEYS, Presliding, PulleyOptions};
 use fric_core::{CableInput, CableStatus, Compensator, CycleInput};
 
 use crate::random::Random;
@@ -145,6 +145,24 @@ fn slide(
         output = compensator.step(&CycleInput { cables, ..CycleInput::default() });
     }
     (output.cables[0], compensator)
+}
+
+/// As many pulleys as there may be, each by equation 10 with `F_pv = 0`: `F_1 = F_0·(2 + sμk)/(2 − sμk)`.
+#[test]
+fn the_longest_chain_slides_as_its_pulleys_do() {
+    let pulleys = [PulleyOptions::Fixed { wrap_rad: std::f64::consts::FRAC_PI_2, sensor: false }; MAX_PULLEYS];
+    let friction = FrictionOptions { mu: 0.03, sigma_n_per_m: Some(5000.0), viscous_n_s_per_m: 0.0, offset_n: 0.0 };
+    for count in 1..=MAX_PULLEYS {
+        for (sense, presliding) in
+            [1.0, -1.0].into_iter().flat_map(|sense| [(sense, Presliding::PerPulley), (sense, Presliding::Lumped)])
+        {
+            let options = CableOptions { presliding, friction, ..CableOptions::new(&pulleys[..count]) };
+            let (output, _) = slide(&options, 20.0, sense * 0.5);
+            let rubs = sense * 0.03 * std::f64::consts::SQRT_2;
+            let expected_n = 20.0 * ((2.0 + rubs) / (2.0 - rubs)).powi(i32::try_from(count).unwrap());
+            assert_near(output.force_at_platform_n, expected_n, 1e-9);
+        }
+    }
 }
 
 #[test]
