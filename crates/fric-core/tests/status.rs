@@ -50,6 +50,13 @@ impl Bench {
 }
 
 #[test]
+fn flags_meet_if_they_share_one() {
+    let (one, other) = (CableStatus::SLACK | CableStatus::SLIP, CableStatus::SLIP | CableStatus::OUT_OF_RANGE);
+    assert!(one.intersects(other) && !one.contains(other));
+    assert!(!CableStatus::SLACK.intersects(other) && !CableStatus::from_bits(0).intersects(one));
+}
+
+#[test]
 fn good_signals_have_no_flag() {
     for presliding in FORMS {
         let mut bench = Bench::new(presliding);
