@@ -13,6 +13,7 @@
 
 use std::collections::BTreeMap;
 
+use fric_lab::discover::Verdict;
 use fric_lab::discover::result::{DiscoverCableResult, EffectResult};
 use fric_lab::fit::Progress;
 use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};
@@ -97,7 +98,7 @@ fn found(text: &str, run: &SimulatedRun) -> TendonDiscovery {
 fn told(tendon: &DiscoverCableResult<Manipulator>) -> String {
     let mut kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
     kinds.dedup();
-    format!("{} {}", tendon.verdict, kinds.join(" "))
+    format!("{} {}", tendon.verdict.name(), kinds.join(" "))
 }
 
 /// The same with segments and with what is not told apart.
@@ -110,7 +111,7 @@ fn told_in_full(tendon: &DiscoverCableResult<Manipulator>) -> String {
     };
     let mut names: Vec<String> = tendon.effects.iter().map(name).collect();
     names.dedup();
-    format!("{} {}", tendon.verdict, names.join(" "))
+    format!("{} {}", tendon.verdict.name(), names.join(" "))
 }
 
 /// What a file states of bending, loads and measurement, by key of the results.
@@ -320,7 +321,7 @@ fn main() {
                 }
             }
             let again = found(&written, &run);
-            let expected = if tendon.verdict == "extended" { "complete" } else { tendon.verdict };
+            let expected = if tendon.verdict == Verdict::Extended { "complete" } else { tendon.verdict.name() };
             same += u32::from(told(&again.result.cables[0]) == format!("{expected} "));
         }
         println!("{} {}: {verdicts:?}; given again as told: {same}", case.experiment.name(), case.name);

@@ -2,12 +2,15 @@
 
 import json
 import math
+import re
+from typing import get_args, get_type_hints
 
 import fric
 import numpy as np
 import pytest
 from matplotlib import pyplot
-from support import PRESS_SOON, ROBOT, SLOW_BENCH, printed, run, without_origin
+from fric._results.replay import Fault
+from support import PRESS_SOON, ROBOT, ROOT, SLOW_BENCH, printed, run, without_origin
 
 HIDDEN = {"kind": "stribeck", "ratio": 1.0, "velocity_m_per_s": 0.03}
 
@@ -254,3 +257,11 @@ def test_a_cable_is_drawn_as_a_whole_or_into_axes_given(robot, result):
         "the model agrees to the noise",
         "nothing was tried",
     ]
+
+
+def test_the_type_of_a_fault_has_every_fault_of_the_documentation():
+    kinds = get_args(get_type_hints(Fault)["kind"])
+    page = (ROOT / "docs" / "discovery.md").read_text(encoding="utf-8")
+    section = page.split("\n## Faults of the recording\n")[1].split("\n## ")[0]
+    rows = [line.split("|")[1] for line in section.splitlines() if line.startswith("| `")]
+    assert sorted(kinds) == sorted(re.findall("`([a-z_]+)`", " ".join(rows)))

@@ -35,7 +35,7 @@ pub struct WrenchError {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WrenchResult {
     /// `wrench`, or `mass` if the reference is the wrench computed from the platform's mass and pose.
-    pub reference: &'static str,
+    pub reference: WrenchReference,
     /// Error with the frictionless forces.
     pub before: WrenchError,
     /// Error with the compensated forces.
@@ -58,13 +58,13 @@ impl WrenchResult {
     #[must_use]
     pub fn of(reference: WrenchReference, before: &WrenchErrors, after: &WrenchErrors) -> Option<Self> {
         let (before, after) = (WrenchError::of(before)?, WrenchError::of(after)?);
-        Some(Self { reference: reference.name(), before, after, held_out: None })
+        Some(Self { reference, before, after, held_out: None })
     }
 
     /// Returns the heading of a table; it names the reference if that is not the measured wrench.
     #[must_use]
     pub fn title(&self) -> &'static str {
-        if self.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" }
+        if self.reference == WrenchReference::Mass { "wrench, by mass" } else { "wrench" }
     }
 
     /// Returns a table.

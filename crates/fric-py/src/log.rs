@@ -300,12 +300,6 @@ impl Log {
         })
     }
 
-    /// Returns the names of its sources, for people.
-    pub fn source_names(&self) -> Vec<String> {
-        let names = self.sources.iter().map(|path| path.display().to_string());
-        if self.sources.is_empty() { vec!["arrays".to_owned()] } else { names.collect() }
-    }
-
     /// Lends the samples to `work`.
     pub fn with_rows<T>(&self, py: Python<'_>, work: impl FnOnce(SampleRows<'_>) -> Outcome<T>) -> Outcome<T> {
         let stamp_nanos = self.stamp_nanos.bind(py).readonly();

@@ -3,12 +3,14 @@
 use fric_tendon::{
     AnyStaticModel, Direction, Friction, MAX_DISKS, ManipulatorError, ManipulatorParams, ShapeStatus, Tendon,
 };
+use serde::Serialize;
 
 use super::gratings::GratingSample;
 use super::run::RunSample;
 
 /// A friction model, by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Way {
     /// Without friction.
     None,

@@ -55,7 +55,7 @@ fn found(text: &str, samples: &[RunSample]) -> TendonDiscovery {
 /// The verdict and the names of what was found.
 fn told(discovery: &TendonDiscovery) -> (&'static str, Vec<&'static str>) {
     let tendon = &discovery.result.cables[0];
-    (tendon.verdict, tendon.effects.iter().map(|effect| effect.kind).collect())
+    (tendon.verdict.name(), tendon.effects.iter().map(|effect| effect.kind).collect())
 }
 
 /// The same without the holes whose μ is their own: those of simulated manipulators differ by ±10 %, and a run with both directions tells some of them.

@@ -49,7 +49,7 @@ pub fn summary(result: &FitResult) -> String {
 /// Returns the report; `fits` belong to the result.
 #[must_use]
 pub fn fit_report(result: &FitResult, fits: &[CableFit]) -> String {
-    let mut text = format!("[[Fit of {}]]\n    reference: {}\n", result.robot, result.reference);
+    let mut text = format!("[[Fit of {}]]\n    reference: {}\n", result.robot, result.reference.name());
     for (cable, fit) in result.cables.iter().zip(fits) {
         // Writing to a String cannot fail, here and below.
         let _ = write!(text, "[[{}]]\n{}[[Variables]]\n{}", cable.name, statistics(cable), variables(cable));

@@ -1,9 +1,28 @@
-//! Presentation of results: text for people, JSON for machines, a page in HTML.
+//! What the command line and the Python module share beyond the computation: results as JSON, verdicts and pages, and the files around them.
 //!
-//! The command line and the Python module compute with `fric-lab` on samples that `fric-log` reads, and present the results through this crate, so
-//! that both show the same. [`json`] is the text of a result for machines, [`provenance`] records its origin, [`report`] contains the pages, each one
-//! file without network access, [`fit_report`] is a fit in the style of lmfit, [`replay`] is the result of a replay, [`set_points`] is the file of a
-//! run, [`recording_name`] checks that of a recording, and [`questions`] are those that a designed run is to answer. The texts of the other results are with them in `fric-lab`.
+//! - [`json`] is a result for machines; [`provenance`] records its origin.
+//! - [`verdict`] is the first sentence about a result and what to do next; [`report`] contains the pages, each one file without network access.
+//! - [`replay`] is the result of a replay, [`fit_report`] a fit in the style of lmfit. The texts of the other results are in `fric-lab`.
+//! - [`set_points`] writes the run of [`excite`]; [`questions`] reads those that a designed run answers; [`recording_name`] checks the name of an
+//!   output.
+//!
+//! # Example
+//!
+//! ```
+//! use fric_work::provenance::Provenance;
+//!
+//! #[derive(serde::Serialize)]
+//! struct Result {
+//!     rms_n: f64,
+//! }
+//!
+//! # fn main() -> std::result::Result<(), serde_json::Error> {
+//! let origin = Provenance::of_call("fric.replay", &[], None);
+//! let text = fric_work::json(&Result { rms_n: 0.25 }, &origin)?;
+//! assert!(text.contains("\"rms_n\": 0.25") && text.contains("\"provenance\""));
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! This crate neither reads logs nor computes friction, and it depends on neither a terminal nor Python.
 

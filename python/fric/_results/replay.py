@@ -52,6 +52,7 @@ class Fault(TypedDict):
 
     kind: Literal[
         "hum",
+        "vibration",
         "noisy_length",
         "frozen",
         "clipped",

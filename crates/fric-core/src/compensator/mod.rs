@@ -28,39 +28,7 @@ use crate::signals::{BEFORE_FIRST, SignalLimits};
 use crate::words::{Words, words_of};
 use nalgebra::{SMatrix, Vector3};
 
-/// Friction compensation of a robot with at most `CABLES` cables.
-///
-/// ```
-/// use fric_core::robot::{
-///     CableOptions, CableParams, FrictionOptions, MonitorOptions, PlatformOptions, PulleyOptions, RobotParams,
-/// };
-/// use fric_core::{CableInput, Compensator, CycleInput};
-///
-/// # fn main() -> Result<(), fric_core::ParamError> {
-/// let pulleys = [PulleyOptions::Fixed { wrap_rad: core::f64::consts::PI, sensor: true }];
-/// let friction = FrictionOptions { mu: 0.02, sigma_n_per_m: Some(1000.0), ..FrictionOptions::default() };
-/// let cables = [CableParams::new(&CableOptions { friction, ..CableOptions::new(&pulleys) })?];
-/// // The signal below has no noise, so the check for a frozen sensor is switched off.
-/// let monitor = MonitorOptions { frozen_cycles: 0, ..MonitorOptions::for_cycle(0.001) };
-/// let robot = RobotParams::new(0.001, &PlatformOptions::default(), monitor, &cables)?;
-/// let mut compensator = Compensator::<1>::new(&robot)?;
-///
-/// let mut input = CycleInput::default();
-/// for cycle in 0..1000 {
-///     input.cables[0] = CableInput {
-///         sensor_force_n: 20.0,
-///         length_m: 1e-4 * f64::from(cycle),
-///         speed_m_per_s: 0.1,
-///     };
-///     let output = compensator.step(&input);
-///     assert!(output.cables[0].status.is_ok());
-/// }
-/// // Paying out over a pulley of 180°: F_1 = F_s (1 + μ)/2 ([P] 14).
-/// let force_n = compensator.step(&input).cables[0].force_at_platform_n;
-/// assert!((force_n - 20.0 * 1.02 / 2.0).abs() < 1e-12);
-/// # Ok(())
-/// # }
-/// ```
+/// Friction compensation of a robot with at most `CABLES` cables; the crate's first page has an example.
 #[derive(Clone, Debug)]
 pub struct Compensator<const CABLES: usize> {
     params: ParamColumns<CABLES>,

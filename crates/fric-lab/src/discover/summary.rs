@@ -1,5 +1,6 @@
 //! The result of a discovery for people: the verdicts of all cables, then the findings on each.
 
+use super::Verdict;
 use super::result::{
     DiscoverCableResult, DiscoverResult, EffectResult, FaultResult, WhereResult, WrenchComponent, WrenchGap,
 };
@@ -35,7 +36,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
     }
     let is_beside_rest = result.wrench.as_ref().is_some_and(|gap| gap.is_of_no_cable);
     let is_quiet = |cable: &&DiscoverCableResult| {
-        cable.verdict == "complete"
+        cable.verdict == Verdict::Complete
             && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
             && cable.tried.is_empty()
             && cable.faults.is_empty()
@@ -61,7 +62,7 @@ fn of_wrench(gap: &WrenchGap) -> String {
     let rows: Vec<_> = gap.components.iter().map(WrenchComponent::cells).collect();
     let mut text = format!("\n{}", table(&[gap.title(), "noise\nrms", "before\nrms", "after\nrms"], 1, &rows));
     text += "\nrms over samples that no fit has seen. All cables together: ";
-    text += gap.verdict;
+    text += gap.verdict.name();
     text += ".\n";
     gap.in_words().iter().for_each(|sentence| text += &wrapped("", sentence));
     text
@@ -75,7 +76,7 @@ fn overview(result: &DiscoverResult) -> String {
         let closed = cable.gap_closed.filter(|_| !cable.effects.is_empty());
         [
             cable.name.clone(),
-            cable.verdict.to_owned(),
+            cable.verdict.name().to_owned(),
             if kinds.is_empty() { "–".to_owned() } else { kinds.join("\n") },
             number(cable.noise_floor_n),
             number(cable.before.map(|error| error.rms_n)),
@@ -94,13 +95,13 @@ fn line(label: &str, text: &str) -> String {
 /// Describes the findings on a cable. Cause and remedy of an effect are given once.
 fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String {
     let mut text = String::new();
-    if let Some(gap) = cable.gap_in_words().filter(|_| cable.verdict != "complete") {
+    if let Some(gap) = cable.gap_in_words().filter(|_| cable.verdict != Verdict::Complete) {
         text += &line("gap", &gap);
     }
-    let variation = cable.variation_in_words().filter(|_| cable.verdict != "complete" || cable.is_constant());
+    let variation = cable.variation_in_words().filter(|_| cable.verdict != Verdict::Complete || cable.is_constant());
     text += &variation.map_or_else(String::new, |variation| line("reference", &variation));
     // Beside a complete model the gap is what fitting its values has closed.
-    let has_gap = |place: &&WhereResult| cable.verdict != "complete" && place.signal != "frequency";
+    let has_gap = |place: &&WhereResult| cable.verdict != Verdict::Complete && place.signal != "frequency";
     for (count, place) in cable.places.iter().filter(has_gap).take(MOST_PLACES).enumerate() {
         text += &line(if count == 0 { "where" } else { "" }, &place.in_words("the gap"));
     }

@@ -41,6 +41,42 @@ impl Fits {
     }
 }
 
+/// The reference of a fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FitReference {
+    /// Forces at the platform.
+    Forces,
+    /// The wrench.
+    Wrench(WrenchReference),
+}
+
+impl FitReference {
+    /// Returns the name used in results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Forces => "forces",
+            Self::Wrench(reference) => reference.name(),
+        }
+    }
+
+    /// Returns a description.
+    #[must_use]
+    pub const fn in_words(self) -> &'static str {
+        match self {
+            Self::Forces => "the cable forces at the platform",
+            Self::Wrench(WrenchReference::Measured) => "the wrench on the platform",
+            Self::Wrench(WrenchReference::Mass) => "the wrench of the platform's mass and pose",
+        }
+    }
+}
+
+impl Serialize for FitReference {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
 /// The result of an identification.
 #[derive(Clone, Debug, Serialize)]
 pub struct FitResult {
@@ -48,8 +84,8 @@ pub struct FitResult {
     pub format: &'static str,
     /// Name of the robot.
     pub robot: String,
-    /// `forces`, `wrench`, or `mass` if the wrench is computed from the platform's mass.
-    pub reference: &'static str,
+    /// The reference.
+    pub reference: FitReference,
     /// The cables in the robot's order.
     pub cables: Vec<FitCableResult>,
     /// Errors of the wrench, if it is the reference.
@@ -197,11 +233,11 @@ impl FitResult {
         let names = robot.cable_names();
         let cables = names.iter().zip(fits.cables());
         let (reference, wrench) = match fits {
-            Fits::Forces(_) => ("forces", None),
+            Fits::Forces(_) => (FitReference::Forces, None),
             Fits::Wrench(WrenchFit { reference, before, after, held_out, .. }) => {
                 let wrench = WrenchResult::of(*reference, before, after);
                 let held_out = WrenchError::of(held_out);
-                (reference.name(), wrench.map(|wrench| WrenchResult { held_out, ..wrench }))
+                (FitReference::Wrench(*reference), wrench.map(|wrench| WrenchResult { held_out, ..wrench }))
             }
         };
         Self {
@@ -307,23 +343,27 @@ impl FitResult {
     }
 }
 
-/// Returns why there is no training sample, and what to do, with a reference by its name.
-fn why_unused(left_out: &LeftOut, reference: &str) -> (&'static str, &'static str) {
+/// Returns why there is no training sample, and what to do.
+fn why_unused(left_out: &LeftOut, reference: FitReference) -> (&'static str, &'static str) {
     let LeftOut { flagged, without_reference, warm_up, outliers: _ } = *left_out;
     if warm_up >= flagged.max(without_reference) {
         let cause = "the cables move too little to forget the friction stored in them when the log began";
-        (cause, "Record longer strokes, best the run of `fric-cli excite`.")
-    } else if flagged >= without_reference {
-        ("each is flagged, or has no tension on the cable", "See the flags with `fric-cli replay`.")
-    } else if reference == WrenchReference::Mass.name() {
-        (NEVER_QUIET, "Record slower motion, or poses with less noise, or the wrench on the platform.")
-    } else if reference == WrenchReference::Measured.name() {
-        ("the wrench is missing wherever all cables have their signals", "See the signals with `fric-cli info`.")
-    } else {
-        (
+        return (cause, "Record longer strokes, best the run of `fric-cli excite`.");
+    }
+    if flagged >= without_reference {
+        return ("each is flagged, or has no tension on the cable", "See the flags with `fric-cli replay`.");
+    }
+    match reference {
+        FitReference::Forces => (
             "the reference is missing, or stands still, wherever the other signals are there",
             "See the signals with `fric-cli info`; a load that stays is `reference = { constant_n = … }` under `[log]`.",
-        )
+        ),
+        FitReference::Wrench(WrenchReference::Measured) => {
+            ("the wrench is missing wherever all cables have their signals", "See the signals with `fric-cli info`.")
+        }
+        FitReference::Wrench(WrenchReference::Mass) => {
+            (NEVER_QUIET, "Record slower motion, or poses with less noise, or the wrench on the platform.")
+        }
     }
 }
 

@@ -5,19 +5,16 @@ use std::fmt::Write as _;
 use fric_core::effects::Effect;
 use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
-use super::result::{FitCableResult, FitResult, LogValues, Numbers, OpenPartResult, OpenResult};
+use super::result::{FitCableResult, FitReference, FitResult, LogValues, Numbers, OpenPartResult, OpenResult};
 use crate::discover::words::recording_lines;
 use crate::search::vector::Parameter;
 use crate::text::{digits_of, number, plain, significant, table, wrapped};
 
 /// Returns \[P\] table I, the uncertainties, and what the log does not determine.
 pub(crate) fn describe(result: &FitResult) -> String {
-    let from = match result.reference {
-        "forces" => "the cable forces at the platform",
-        "wrench" => "the wrench on the platform, all cables at once",
-        _ => "the platform's mass and pose, all cables at once",
-    };
-    let mut text = wrapped("", &format!("{}: friction identified from {from}", result.robot)) + "\n";
+    let at_once = if result.reference == FitReference::Forces { "" } else { ", all cables at once" };
+    let from = result.reference.in_words();
+    let mut text = wrapped("", &format!("{}: friction identified from {from}{at_once}", result.robot)) + "\n";
     text += &paper_table(result);
     text += &legend(result);
     text += "\nstandard errors; ± twice as much holds the value with 95 %\n\n";
@@ -265,7 +262,7 @@ pub(crate) fn log_table<'a>(cables: impl Iterator<Item = (&'a str, &'a [LogValue
 /// Returns header and rows of the table of the training samples; one row if it is the same for all cables.
 pub(super) fn samples(result: &FitResult) -> (Vec<&'static str>, Vec<Vec<String>>) {
     type Count = fn(&FitCableResult) -> usize;
-    let no_reference = if result.reference == "forces" { "no reference" } else { "no wrench" };
+    let no_reference = if result.reference == FitReference::Forces { "no reference" } else { "no wrench" };
     let all: [(&'static str, Count); 6] = [
         ("used", |cable| cable.samples),
         ("flagged", |cable| cable.left_out.flagged),

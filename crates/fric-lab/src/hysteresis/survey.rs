@@ -76,12 +76,6 @@ impl CrossedPose {
         &self.pose
     }
 
-    /// Whether the log crosses it along or about this axis in both directions.
-    #[must_use]
-    pub fn has_axis(&self, axis: CartesianAxis) -> bool {
-        self.reach_m(axis).is_some()
-    }
-
     pub(super) fn reach_m(&self, axis: CartesianAxis) -> Option<f64> {
         self.reaches_m.get(axis.index()).copied().flatten()
     }

@@ -12,6 +12,7 @@ mod warnings;
 use std::collections::VecDeque;
 
 use fric_core::{AnyCompensator, CableOutput, CableParams, CableStatus, ParamError, Pose, RobotParams, Sample, Wrench};
+use serde::Serialize;
 
 use crate::clock::Clock;
 use crate::fit::readiness::Tension;
@@ -82,9 +83,11 @@ impl WrenchErrors {
 }
 
 /// The reference of the wrench.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum WrenchReference {
     /// The wrench in the log.
+    #[serde(rename = "wrench")]
     Measured,
     /// The wrench of the platform's mass and pose, in slow motion.
     Mass,

@@ -84,7 +84,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> T
         before: ForceError::of(&before.held_out_n),
         after: ForceError::of(&after.held_out_n),
         gap_closed: closed(after),
-        verdict: verdict.name(),
+        verdict: *verdict,
         missing: Absent,
         places: if *verdict == Verdict::Complete { Vec::new() } else { segments(before) },
         markers: marker_errors(markers),

@@ -26,7 +26,7 @@ pub fn describe(result: &DiscoverResult<Manipulator>) -> String {
             kinds.dedup();
             [
                 tendon.name.clone(),
-                tendon.verdict.to_owned(),
+                tendon.verdict.name().to_owned(),
                 if kinds.is_empty() { "–".to_owned() } else { kinds.join("\n") },
                 tendon.noise_floor_n.map_or_else(|| "–".to_owned(), |noise_n| format!("{noise_n:.4}")),
                 number(tendon.before),

@@ -58,8 +58,8 @@ pub struct ShapeResult {
 /// Errors of one friction model.
 #[derive(Clone, Debug, Serialize)]
 pub struct WayErrors {
-    /// Its name.
-    pub way: &'static str,
+    /// The friction model.
+    pub way: Way,
     /// Errors over the selected shapes.
     pub picked: ErrorResult,
     /// Errors over all samples.
@@ -103,8 +103,8 @@ pub struct PickedShape {
 /// One shape by one friction model.
 #[derive(Clone, Debug, Serialize)]
 pub struct WayShape {
-    /// Its name.
-    pub way: &'static str,
+    /// The friction model.
+    pub way: Way,
     /// Distances between disks and markers.
     #[serde(flatten)]
     pub errors: ErrorResult,
@@ -123,8 +123,8 @@ pub struct WayShape {
 /// One friction model over the run, with one entry per sample.
 #[derive(Clone, Debug, Serialize)]
 pub struct WaySeries {
-    /// Its name.
-    pub way: &'static str,
+    /// The friction model.
+    pub way: Way,
     /// Status of the model.
     pub status: Vec<String>,
     /// Bend of the manipulator, rad.
@@ -172,7 +172,7 @@ impl ShapeResult {
             let by = |way: &WayShapes| {
                 let shape = way.shapes.get(*place)?.clone();
                 Some(WayShape {
-                    way: way.way.name(),
+                    way: way.way,
                     errors: ErrorResult::from(&ShapeErrors::of(&shape, &sample.marker_m)),
                     bend_rad: shape.bend_rad,
                     disk_position_m: shape.disk_position_m,
@@ -198,7 +198,7 @@ impl ShapeResult {
             }
             let missing = way.errors.missing_count;
             WayErrors {
-                way: way.way.name(),
+                way: way.way,
                 picked: (&errors).into(),
                 all: (&way.errors).into(),
                 missing,
@@ -207,7 +207,7 @@ impl ShapeResult {
             }
         };
         let series = |way: &WayShapes| WaySeries {
-            way: way.way.name(),
+            way: way.way,
             status: way.shapes.iter().map(|shape| shape.status.to_string()).collect(),
             bend_rad: way.shapes.iter().map(|shape| shape.bend_rad).collect(),
             friction_n: way.shapes.iter().map(|shape| shape.friction_n.clone()).collect(),
@@ -272,7 +272,7 @@ impl ShapeResult {
         let cells = |errors: ErrorResult| picked(millimetres(errors.mean_mm), millimetres(errors.max_mm));
         let mut header = ["", "time\n[s]", "tension\n[N]", "bend\n[°]"].map(ToOwned::to_owned).to_vec();
         let head = |way: &WayErrors| {
-            let lines = if way.way == Way::None.name() { ["no", "friction"] } else { ["", way.way] };
+            let lines = if way.way == Way::None { ["no", "friction"] } else { ["", way.way.name()] };
             if wide {
                 let name = lines.join(" ");
                 vec![format!("{}\nmean", name.trim()), format!("{}\nmax", name.trim())]
@@ -283,7 +283,7 @@ impl ShapeResult {
         header.extend(self.ways.iter().flat_map(head));
         let mut rows: Vec<Vec<String>> = Vec::new();
         for (place, shape) in self.shapes.iter().enumerate() {
-            let best = shape.ways.iter().rev().find(|way| way.way != Way::Coulomb.name()).or(shape.ways.last());
+            let best = shape.ways.iter().rev().find(|way| way.way != Way::Coulomb).or(shape.ways.last());
             let bend_rad = best.map(|way| way.bend_rad);
             let tension =
                 if shape.tension_base_n.is_nan() { "–".to_owned() } else { format!("{:.3}", shape.tension_base_n) };
@@ -307,7 +307,7 @@ impl ShapeResult {
             sum(format!("all {}", self.samples), &|way| cells(way.all));
             for (name, published) in PUBLISHED.into_iter().filter(|_| self.is_prototype) {
                 sum(name.to_owned(), &|way| {
-                    let place = Way::ALL.iter().position(|other| other.name() == way.way);
+                    let place = Way::ALL.iter().position(|other| *other == way.way);
                     let found = place.and_then(|place| published.get(place));
                     let [max, mean] = [0, 1].map(|end| millimetres(found.map(|pair| pair[end])));
                     picked(mean, max)
@@ -315,7 +315,7 @@ impl ShapeResult {
             }
         }
         let columns: Vec<&str> = header.iter().map(String::as_str).collect();
-        let legend = LEGEND.iter().filter(|(way, _)| self.ways.iter().any(|shown| shown.way == way.name()));
+        let legend = LEGEND.iter().filter(|(way, _)| self.ways.iter().any(|shown| shown.way == *way));
         let legend: Vec<String> = legend.map(|(way, what)| format!("{}: {what}", way.name())).collect();
         let what = if wide { "mean and greatest" } else { "mean" };
         let published = if self.is_prototype { PUBLISHED_LEGEND } else { "" };

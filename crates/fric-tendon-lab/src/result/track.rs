@@ -23,7 +23,7 @@ pub struct TrackResult {
     /// Name of the manipulator.
     pub manipulator: String,
     /// The friction model.
-    pub way: &'static str,
+    pub way: Way,
     /// Number of goals.
     pub goals: usize,
     /// Number of goals that the commands reach.
@@ -65,7 +65,7 @@ pub struct TrackSimulation {
 #[derive(Clone, Debug, Serialize)]
 pub struct TrackErrors {
     /// Name of the friction model.
-    pub way: &'static str,
+    pub way: Way,
     /// Mean distance, mm.
     pub mean_mm: f64,
     /// Greatest distance, mm.
@@ -93,7 +93,7 @@ impl TrackSimulation {
             let each = |of: &dyn Fn(&TrackedGoal) -> f64| track.goals.iter().map(of).collect::<Vec<f64>>();
             let error_mm = each(&|goal| 1e3 * goal.error_m());
             TrackErrors {
-                way: track.way.name(),
+                way: track.way,
                 mean_mm: 1e3 * track.mean_error_m(),
                 max_mm: error_mm.iter().copied().fold(0.0, f64::max),
                 mean_along_mm: 1e3 * track.mean_along_m(),
@@ -113,7 +113,7 @@ impl TrackSimulation {
     pub fn table(&self) -> String {
         let has_bends = self.ways.iter().any(|way| way.mean_bend_error_rad.is_some());
         let row = |way: &TrackErrors| {
-            let name = if way.way == Way::None.name() { "no friction" } else { way.way };
+            let name = if way.way == Way::None { "no friction" } else { way.way.name() };
             let mut row = vec![name.to_owned()];
             row.extend([way.mean_mm, way.max_mm, way.mean_along_mm].map(|value| millimetres(Some(value))));
             row.extend(way.mean_bend_error_rad.map(|rad| format!("{:.2}", rad.to_degrees())));
@@ -164,7 +164,7 @@ impl TrackResult {
         Self {
             format: Self::FORMAT,
             manipulator: manipulator.to_owned(),
-            way: way.name(),
+            way,
             goals: followed.len(),
             reached: followed.iter().filter(|goal| goal.status.is_reached()).count(),
             time_s: time_s.map(<[f64]>::to_vec),
@@ -215,8 +215,13 @@ impl TrackResult {
             .map(|(name, count)| format!("{name} {count}"))
             .collect();
         let flags = if counts.is_empty() { String::new() } else { format!("; {}", counts.join(", ")) };
-        let head =
-            format!("{}: by `{}` {} of {} goals reached{flags}", self.manipulator, self.way, self.reached, self.goals);
+        let head = format!(
+            "{}: by `{}` {} of {} goals reached{flags}",
+            self.manipulator,
+            self.way.name(),
+            self.reached,
+            self.goals
+        );
         let has_second = self.tension_base_n.iter().any(|[_, second_n]| *second_n > 0.0);
         let mut heads = vec!["", "goal", "tension\n[N]"];
         if has_second {

@@ -1,5 +1,6 @@
 //! Markers take part in the verdict, and the file written makes no shape worse.
 
+use fric_lab::discover::Verdict;
 use fric_tendon::edit::rewrite;
 use fric_tendon::file::ManipulatorFile;
 use fric_tendon_lab::discover::TendonDiscovery;
@@ -149,7 +150,7 @@ fn without_markers_the_bending_is_not_told() {
     }
     let discovery = found(&text, &samples);
     assert!(discovery.result.cables[0].markers.is_none());
-    assert_ne!(discovery.result.cables[0].verdict, "unexplained");
+    assert_ne!(discovery.result.cables[0].verdict, Verdict::Unexplained);
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::verdict::{self, left_in_words};
 #[must_use]
 pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &Provenance) -> String {
     let content = html! {
-        p.soft { "Fitted to " (reference_in_words(result.reference)) ". ± is one standard error." }
+        p.soft { "Fitted to " (result.reference.in_words()) ". ± is one standard error." }
         (errors(result))
         @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
         (samples(result))
@@ -55,14 +55,6 @@ fn samples(result: &FitResult) -> Markup {
 #[must_use]
 pub fn table(result: &FitResult) -> String {
     values(&result.cables).into_string()
-}
-
-fn reference_in_words(reference: &str) -> &'static str {
-    match reference {
-        "forces" => "the cable forces at the platform",
-        "wrench" => "the wrench on the platform",
-        _ => "the wrench of the platform's mass",
-    }
 }
 
 fn values(cables: &[FitCableResult]) -> Markup {

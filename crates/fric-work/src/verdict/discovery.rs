@@ -1,5 +1,6 @@
 //! The verdict on a discovery: what the model lacks, on which cables, and what to do about it.
 
+use fric_lab::discover::Verdict as Found;
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, EffectResult, RunnerUpResult, WrenchGap};
 use fric_lab::discover::words::FROM_OUTSIDE;
 use fric_lab::text::listed;
@@ -10,7 +11,7 @@ use super::{Tone, Verdict};
 #[must_use]
 pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     let count = result.cables.len();
-    let with = |verdict: &str| -> Vec<&DiscoverCableResult> {
+    let with = |verdict| -> Vec<&DiscoverCableResult> {
         result.cables.iter().filter(|cable| cable.verdict == verdict).collect()
     };
     let on = |cables: &[&str]| {
@@ -31,7 +32,7 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     }
     let names =
         |cables: &[&DiscoverCableResult]| on(&cables.iter().map(|cable| cable.name.as_str()).collect::<Vec<_>>());
-    let [complete, unexplained, untold] = ["complete", "unexplained", "untold"].map(with);
+    let [complete, unexplained, untold] = [Found::Complete, Found::Unexplained, Found::Untold].map(with);
     let is_worse = |cable: &&DiscoverCableResult| {
         let (before, after) = (cable.before.map(|error| error.rms_n), cable.after.map(|error| error.rms_n));
         before
@@ -46,7 +47,7 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     let is_of_no_cable = result.wrench.as_ref().is_some_and(|gap| gap.is_of_no_cable);
     let has_faults = result.cables.iter().any(|cable| !cable.faults.is_empty());
     let is_whole_complete =
-        complete.len() == count && result.wrench.as_ref().is_none_or(|gap| gap.verdict == "complete");
+        complete.len() == count && result.wrench.as_ref().is_none_or(|gap| gap.verdict == Found::Complete);
     if is_whole_complete {
         parts.push(format!("The model is complete on {}: what is left is noise.", names(&complete)));
         if has_faults {
@@ -63,7 +64,7 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
         if !untold.is_empty() {
             parts.push(format!("The log does not tell anything of {}.", names(&untold)));
         }
-        if result.wrench.as_ref().is_some_and(|gap| gap.verdict == "unexplained") {
+        if result.wrench.as_ref().is_some_and(|gap| gap.verdict == Found::Unexplained) {
             parts.push("Of the wrench on the platform something is left without a name.".to_owned());
         }
         if !complete.is_empty() {

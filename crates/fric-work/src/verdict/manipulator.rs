@@ -1,5 +1,6 @@
 //! Verdicts on the results of a continuum manipulator.
 
+use fric_lab::discover::Verdict as Found;
 use fric_lab::discover::result::DiscoverResult;
 use fric_lab::text::listed;
 use fric_tendon_lab::discover::{Manipulator, rest_in_words};
@@ -87,7 +88,7 @@ pub fn of_shapes(result: &ShapeResult) -> Verdict {
     let mut known: Vec<(&str, f64)> = result
         .ways
         .iter()
-        .filter_map(|way| Some((way.way, mean_mm(way)?)))
+        .filter_map(|way| Some((way.way.name(), mean_mm(way)?)))
         .filter(|(_, mean_mm)| mean_mm.is_finite())
         .collect();
     known.sort_by(|one, other| one.1.total_cmp(&other.1));
@@ -116,8 +117,8 @@ pub fn of_tendon(result: &DiscoverResult<Manipulator>) -> Verdict {
     let (mut parts, mut todo, mut is_well) = (Vec::new(), Vec::new(), true);
     for tendon in &result.cables {
         let kinds: Vec<&str> = tendon.effects.iter().map(|effect| effect.kind).collect();
-        is_well &= tendon.verdict == "complete";
-        if tendon.verdict == "complete" {
+        is_well &= tendon.verdict == Found::Complete;
+        if tendon.verdict == Found::Complete {
             parts.push("The model is complete: what is left is noise.".to_owned());
         }
         if tendon.markers.is_none() {
@@ -130,7 +131,7 @@ pub fn of_tendon(result: &DiscoverResult<Manipulator>) -> Verdict {
         if !kinds.is_empty() {
             parts.push(format!("The model lacks {}.", listed(&kinds)));
         }
-        if tendon.verdict == "unexplained" {
+        if tendon.verdict == Found::Unexplained {
             parts.push("Something is left without a name.".to_owned());
         }
         todo.extend(tendon.effects.iter().map(|effect| format!("{}: {}", effect.kind, effect.effect[1])));

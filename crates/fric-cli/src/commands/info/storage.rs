@@ -1,11 +1,11 @@
 //! Storage, duration and start of a log.
 
 use std::fmt::Write as _;
-use std::time::{Duration, UNIX_EPOCH};
 
 use fric_core::text_file::printable;
 use fric_log::log::Storage;
 use indicatif::DecimalBytes;
+use jiff::Timestamp;
 use serde::Serialize;
 
 use super::pace::{Pace, Times};
@@ -98,8 +98,9 @@ impl StorageResult {
         }
         // A log that counts from its own beginning has no date.
         if let Some(start_nanos) = self.start_nanos.filter(|nanos| *nanos >= EARLIEST_DATE_NANOS) {
-            let start = UNIX_EPOCH + Duration::from_nanos(start_nanos);
-            line("start:", &humantime::format_rfc3339_millis(start).to_string());
+            if let Ok(start) = Timestamp::from_nanosecond(start_nanos.into()) {
+                line("start:", &format!("{start:.3}"));
+            }
         }
         if let Some(duration_s) = self.duration_s {
             line("duration:", &format!("{duration_s:.3} s"));

@@ -1,7 +1,7 @@
 //! The findings on one cable.
 
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, VISCOUS, Values};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::effect::{Candidate, EffectResult, TriedResult, effect_result, errors};
 use super::fault::FaultResult;
@@ -52,9 +52,8 @@ pub struct DiscoverCableResult<M: Machine = Robot> {
     pub after: Option<ForceError>,
     /// Fraction of the gap that the extended model closes.
     pub gap_closed: Option<f64>,
-    /// `complete`, `extended` or `unexplained`; `untold` if the log does not allow a verdict, which is `null` in JSON.
-    #[serde(serialize_with = "verdict_or_null")]
-    pub verdict: &'static str,
+    /// The verdict.
+    pub verdict: Verdict,
     /// What the log lacks for a verdict.
     #[serde(skip_serializing_if = "is_absent")]
     pub missing: M::OfRobots<Option<Missing>>,
@@ -119,8 +118,11 @@ impl Verdict {
     }
 }
 
-fn verdict_or_null<S: serde::Serializer>(verdict: &&'static str, serializer: S) -> Result<S::Ok, S::Error> {
-    Some(*verdict).filter(|verdict| *verdict != Verdict::Untold.name()).serialize(serializer)
+/// Without a verdict, `null`.
+impl Serialize for Verdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (*self != Self::Untold).then(|| self.name()).serialize(serializer)
+    }
 }
 
 pub fn cable_result(
@@ -158,7 +160,7 @@ pub fn cable_result(
         after,
         calibration_error_n: None,
         gap_closed: after.and_then(|after| share(after.rms_n)),
-        verdict: found.verdict.name(),
+        verdict: found.verdict,
         missing,
         places,
         markers: None,

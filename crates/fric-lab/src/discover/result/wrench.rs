@@ -4,9 +4,11 @@ use serde::Serialize;
 
 use super::effect::Evidence;
 use super::finite;
+use crate::discover::Verdict;
 use crate::discover::wrench::{GeometryFinding, WrenchDiscovery};
 use crate::errors::WrenchError;
 use crate::fit::result::Numbers;
+use crate::replay::WrenchReference;
 
 /// Names of the components with their units.
 const COMPONENTS: [&str; 6] = ["fx_n", "fy_n", "fz_n", "tx_nm", "ty_nm", "tz_nm"];
@@ -14,10 +16,10 @@ const COMPONENTS: [&str; 6] = ["fx_n", "fy_n", "fz_n", "tx_nm", "ty_nm", "tz_nm"
 /// The wrench error before and after, and the findings about the whole robot.
 #[derive(Clone, Debug, Serialize)]
 pub struct WrenchGap {
-    /// `wrench`, or `mass` if the reference is the wrench computed from the platform's mass and pose.
-    pub reference: &'static str,
-    /// Verdict for all cables together: `complete`, `extended` or `unexplained`.
-    pub verdict: &'static str,
+    /// The reference.
+    pub reference: WrenchReference,
+    /// Verdict for all cables together.
+    pub verdict: Verdict,
     /// Error of the given model, fitted, on held-out samples.
     pub before: Option<WrenchError>,
     /// Error of the extended model on held-out samples.
@@ -102,8 +104,8 @@ impl WrenchGap {
         let length = |parts: &[f64]| parts.iter().map(|part| part * part).sum::<f64>().sqrt();
         let (force, torque) = found.noise.split_at(3);
         Self {
-            reference: found.reference.name(),
-            verdict: found.verdict.name(),
+            reference: found.reference,
+            verdict: found.verdict,
             is_of_no_cable: found.is_of_no_cable,
             inertia_kg_m2: found.inertia_kg_m2,
             before: WrenchError::of(&found.before.errors),

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use fric_core::effects::Effect;
 
 use super::{condition, intervals, newtons, percent};
+use crate::discover::Verdict;
 use crate::discover::faults::Fault;
 use crate::discover::rest::places::LEAST_CONCENTRATION;
 use crate::discover::result::{DiscoverCableResult, EffectResult, UnexplainedResult, WhereResult};
@@ -161,24 +162,24 @@ impl DiscoverCableResult {
         let all: Vec<&EffectResult> = self.effects.iter().collect();
         let wander_n = self.wander_n.filter(|wander_n| *wander_n > 0.0).map(newtons);
         let mut text = match self.verdict {
-            "complete" if is_beside_rest => "Nothing of what is left of the wrench is told to be of this cable.".to_owned(),
-            "extended" if is_beside_rest => {
+            Verdict::Complete if is_beside_rest => "Nothing of what is left of the wrench is told to be of this cable.".to_owned(),
+            Verdict::Extended if is_beside_rest => {
                 format!("The model lacks {}. Nothing of what is left of the wrench is told to be of this cable.", names(&all))
             }
-            "complete" if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
-            "complete" if self.tried.iter().any(|tried| tried.is_within_noise) => {
+            Verdict::Complete if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
+            Verdict::Complete if self.tried.iter().any(|tried| tried.is_within_noise) => {
                 "With values fitted to the log, the model agrees with it to the noise, as far as the log shows what its noise is. \
                  A longer log would tell whether something small is missing."
                     .to_owned()
             }
-            "complete" => {
+            Verdict::Complete => {
                 "Nothing is missing: with values fitted to the log, the model agrees with it to the noise.".to_owned()
             }
-            "extended" => {
+            Verdict::Extended => {
                 let with = if all.len() > 1 { "them" } else { "it" };
                 format!("The model lacks {}; with {with}, what is left is noise.", names(&all))
             }
-            _ => {
+            Verdict::Unexplained | Verdict::Untold => {
                 let named: Vec<&EffectResult> =
                     all.iter().copied().filter(|effect| effect.effect != Effect::Empirical).collect();
                 let lacks =
@@ -214,7 +215,7 @@ impl DiscoverCableResult {
         );
         Some(match self.gap_closed.filter(|_| !self.effects.is_empty()) {
             Some(share) => format!("{ends}: {} of the gap closed", percent(share)),
-            None if self.verdict == "complete" => {
+            None if self.verdict == Verdict::Complete => {
                 format!("rms {} with fitted values; the noise is {}", newtons(after.rms_n), newtons(floor_n))
             }
             None => ends,

@@ -14,7 +14,7 @@ impl WrenchGap {
     /// Returns what the forces were compared with.
     #[must_use]
     pub fn title(&self) -> &'static str {
-        if self.reference == WrenchReference::Mass.name() { "wrench, by mass" } else { "wrench" }
+        if self.reference == WrenchReference::Mass { "wrench, by mass" } else { "wrench" }
     }
 
     /// Returns the entries of the robot file that are wrong, as sentences.
@@ -38,12 +38,12 @@ impl WrenchGap {
         });
         // The forces are known up to a common factor, with which the friction goes.
         let names_mass = self.geometry.iter().any(|wrong| wrong.kind == Geometry::Mass.key());
-        let scale = (names_mass && self.reference == WrenchReference::Mass.name()).then(|| {
+        let scale = (names_mass && self.reference == WrenchReference::Mass).then(|| {
             "By the weight alone, a wrong mass cannot be told from force sensors that all show too much or too little by the \
              same factor: weigh the platform, or check one sensor with a known load."
                 .to_owned()
         });
-        let rest = self.after.filter(|_| self.verdict == Verdict::Unexplained.name()).map(|after| {
+        let rest = self.after.filter(|_| self.verdict == Verdict::Unexplained).map(|after| {
             let [after, noise] =
                 [after, self.noise_floor].map(|of| format!("{:.4} N and {:.4} Nm", of.force_rms_n, of.torque_rms_nm));
             format!("Of the wrench {after} are left, where the noise is {noise}.")
@@ -92,8 +92,8 @@ mod tests {
         WrenchGap {
             is_of_no_cable: false,
             inertia_kg_m2: None,
-            reference: reference.name(),
-            verdict: "extended",
+            reference,
+            verdict: Verdict::Extended,
             before: None,
             after: None,
             noise_floor: WrenchError { force_rms_n: 0.1, torque_rms_nm: 0.01 },

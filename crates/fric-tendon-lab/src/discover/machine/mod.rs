@@ -17,6 +17,7 @@ use self::candidate::Candidate;
 use self::joint::{Jacobian, Joint, Point, Set, Units};
 use crate::discover::case::thinned_to;
 use crate::discover::friction::naming::LEAST_EVIDENCE;
+use crate::discover::noise::PRACTICAL_RATIO;
 use crate::identify::errors::{MODEL_TENSION_RATIO, PRACTICAL};
 use crate::identify::unknown::Unknown;
 use crate::run::{Run, RunSample};
@@ -33,8 +34,6 @@ const STUCK_RATIO: f64 = 2.0;
 const RESTARTS: [f64; 6] = [-6.0, -4.0, -2.0, 2.0, 4.0, 6.0];
 /// Candidates that promise this fraction of the best one's evidence are fitted completely before they are compared.
 const NEAR_RATIO: f64 = 0.8;
-/// Negligible change of the tensions, as a fraction of the greatest one.
-const PRACTICAL_RATIO: f64 = 0.0005;
 /// Temperature sensitivity of a silica grating, `α_Λ + α_n`, 1/K, and the C-band wavelength, nm, which is used if the file states none.
 const SILICA_PER_K: f64 = 6.85e-6;
 const USUAL_WAVELENGTH_NM: f64 = 1550.0;

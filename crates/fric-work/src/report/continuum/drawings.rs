@@ -151,11 +151,11 @@ pub(super) fn bars(ways: &[(&'static str, &[f64], &[f64])], width: f64) -> Strin
 }
 
 pub(super) fn frictions(shape: &PickedShape) -> String {
-    let with_friction = shape.ways.iter().filter(|way| way.way != Way::None.name());
+    let with_friction = shape.ways.iter().filter(|way| way.way != Way::None);
     let ways: Vec<(&'static str, &[f64], &[f64])> = with_friction
         .map(|WayShape { way, friction_n, bound_n, .. }| {
-            let bound_n: &[f64] = if *way == Way::History.name() { bound_n } else { &[] };
-            (*way, friction_n.as_slice(), bound_n)
+            let bound_n: &[f64] = if *way == Way::History { bound_n } else { &[] };
+            (way.name(), friction_n.as_slice(), bound_n)
         })
         .collect();
     bars(&ways, 470.0)
@@ -170,7 +170,7 @@ pub(super) fn drawn(shape: &PickedShape) -> String {
     let lines: Vec<(&str, Vec<[f64; 2]>)> = shape
         .ways
         .iter()
-        .map(|way| (way.way, std::iter::once([0.0; 2]).chain(way.disk_position_m.iter().copied()).collect()))
+        .map(|way| (way.way.name(), std::iter::once([0.0; 2]).chain(way.disk_position_m.iter().copied()).collect()))
         .collect();
     let markers = finite(&shape.marker_m);
     for [x, y] in lines.iter().flat_map(|(_, places)| places).chain(&markers) {

@@ -87,7 +87,7 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], provenance: &P
     let content = html! {
         p.soft { (result.samples) " samples." }
         (warnings(&result.grating_warnings()))
-        p { (keys(result.ways.iter().map(|way| way.way))) @if has_markers { (key("marker", "markers")) } }
+        p { (keys(result.ways.iter().map(|way| way.way.name()))) @if has_markers { (key("marker", "markers")) } }
         p.soft { "Dashed over the bars: the most that a hole holds by the model's μ; what is measured may be more." }
         (errors_by_way(result))
         @if has_markers {
@@ -100,20 +100,20 @@ pub fn shape(result: &ShapeResult, run: &Run, ways: &[WayShapes], provenance: &P
                     @if shape.tension_base_n.is_finite() { (format!("{:.3} N at the base. ", shape.tension_base_n)) }
                     @for way in &shape.ways {
                         @if let (Some(max_mm), Some(mean_mm)) = (way.errors.max_mm, way.errors.mean_mm) {
-                            (format!("{}: max {max_mm:.2}, mean {mean_mm:.2} mm. ", way.way))
+                            (format!("{}: max {max_mm:.2}, mean {mean_mm:.2} mm. ", way.way.name()))
                         }
                     }
                 }
                 div.views {
                     figure { (PreEscaped(drawn(shape))) }
-                    @if shape.ways.iter().any(|way| way.way != Way::None.name()) {
+                    @if shape.ways.iter().any(|way| way.way != Way::None) {
                         figure { (PreEscaped(frictions(shape))) }
                     }
                 }
             }
         }
     };
-    let names: Vec<&str> = result.ways.iter().map(|way| way.way).collect();
+    let names: Vec<&str> = result.ways.iter().map(|way| way.way.name()).collect();
     let by = if names.len() == Way::ALL.len() { "four ways of friction".to_owned() } else { names.join(", ") };
     let title = format!("{}: shapes by {by}", result.manipulator);
     plain(title, verdict::of_shapes(result), content, plots, provenance)
@@ -126,7 +126,7 @@ pub fn discovery(found: &TendonDiscovery, provenance: &Provenance) -> String {
     let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), percent);
     let content = html! {
         @for tendon in &result.cables {
-            p { "Verdict: " span class=(format!("verdict {}", tendon.verdict)) { (tendon.verdict) } }
+            p { "Verdict: " span class=(format!("verdict {}", tendon.verdict.name())) { (tendon.verdict.name()) } }
             dl {
                 dt { "samples" } dd { (tendon.samples) }
                 dt { "noise" } dd { (number(tendon.noise_floor_n)) " N" }
@@ -185,7 +185,7 @@ pub fn discovery_table(result: &DiscoverResult<Manipulator>) -> String {
             tr { th.words { "verdict" } th.words { "found" } th { "noise [N]" } th { "rms before [N]" } th { "after [N]" } }
             @for tendon in &result.cables {
                 tr {
-                    td.words { (tendon.verdict) }
+                    td.words { (tendon.verdict.name()) }
                     td.words { (tendon.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", ")) }
                     td { (number(tendon.noise_floor_n)) }
                     td { (number(tendon.before.map(|error| error.rms_n))) } td { (number(tendon.after.map(|error| error.rms_n))) }

@@ -77,7 +77,7 @@ pub(super) fn errors_by_way(result: &ShapeResult) -> Markup {
             tr { th { "way" } th { "max, shown [mm]" } th { "mean [mm]" } th { "max, all [mm]" } th { "mean [mm]" } th { "missing" } }
             @for way in &result.ways {
                 tr {
-                    td { (way.way) }
+                    td { (way.way.name()) }
                     td { (millimetres(way.picked.max_mm)) } td { (millimetres(way.picked.mean_mm)) }
                     td { (millimetres(way.all.max_mm)) } td { (millimetres(way.all.mean_mm)) } td { (way.missing) }
                 }

@@ -7,7 +7,7 @@ use fric_lab::discover::result::{
     Candidate, DiscoverCableResult, DiscoverResult, EffectResult, WhereResult, WrenchGap,
 };
 use fric_lab::discover::words::{condition, evidence, interval, name_of, percent, significance};
-use fric_lab::discover::{CableDiscovery, Model};
+use fric_lab::discover::{CableDiscovery, Model, Verdict};
 use fric_lab::fit::{HALF_INTERVAL, Parameter};
 use fric_lab::text::quantity;
 use maud::{Markup, PreEscaped, html};
@@ -29,7 +29,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance:
         @if result.cables.len() > 1 {
             nav {
                 @for (place, cable) in result.cables.iter().enumerate() {
-                    a href=(format!("#cable-{place}")) { span class=(cable.verdict) { "● " } (cable.name) }
+                    a href=(format!("#cable-{place}")) { span class=(cable.verdict.name()) { "● " } (cable.name) }
                 }
             }
         }
@@ -40,7 +40,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance:
         }
         @for (place, (cable, found)) in result.cables.iter().zip(discoveries).enumerate() {
             section.cable id=(format!("cable-{place}")) data-cable=(place) {
-                h2 { (cable.name) ": " span class={ "verdict " (cable.verdict) } { (cable.verdict) } }
+                h2 { (cable.name) ": " span class={ "verdict " (cable.verdict.name()) } { (cable.verdict.name()) } }
                 p { (cable.verdict_in_words(result.wrench.as_ref().is_some_and(|gap| gap.is_of_no_cable))) }
                 @if cable.noise_floor_n.is_some() { (details(&mut plots, &common, cable, found)) }
             }
@@ -96,7 +96,7 @@ fn overview(result: &DiscoverResult, named: impl Fn(usize, &str) -> Markup) -> M
             @for (place, cable) in result.cables.iter().enumerate() {
                 tr {
                     td { (named(place, &cable.name)) }
-                    td class={ "words verdict " (cable.verdict) } { (cable.verdict) }
+                    td class={ "words verdict " (cable.verdict.name()) } { (cable.verdict.name()) }
                     td.words {
                         @if cable.effects.is_empty() { "–" }
                         (cable.effects.iter().map(|effect| effect.kind).collect::<Vec<_>>().join(", "))
@@ -128,7 +128,7 @@ fn share_closed(cable: &DiscoverCableResult) -> Option<f64> {
 /// Returns the findings for all cables together.
 fn of_wrench(gap: &WrenchGap) -> Markup {
     html! {
-        h2 { "All cables together: " span class={ "verdict " (gap.verdict) } { (gap.verdict) } }
+        h2 { "All cables together: " span class={ "verdict " (gap.verdict.name()) } { (gap.verdict.name()) } }
         table {
             tr { th { (gap.title()) } th { "noise" } th { "rms before" } th { "after" } }
             @for component in &gap.components {
@@ -159,7 +159,7 @@ fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, foun
             h3 { "Unexplained" }
             ul { @for sentence in rest.in_words() { li { (sentence) } } }
         }
-        @if cable.verdict != "complete" && cable.before.is_some() {
+        @if cable.verdict != Verdict::Complete && cable.before.is_some() {
             figure {
                 h3 { "Gap" }
                 (PreEscaped(ladder(cable)))

@@ -104,12 +104,6 @@ impl WrenchGroup {
             Self::Base => "wrong base_m",
         }
     }
-
-    /// Whether the log has a line of the mains in it.
-    #[must_use]
-    pub const fn has_hum(self) -> bool {
-        matches!(self, Self::Hum | Self::HumAndGain)
-    }
 }
 
 /// One log of a whole robot, described.
