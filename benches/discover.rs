@@ -2,7 +2,7 @@
 //!
 //! The cases are those of [`fric_lab::simulate::sweep`]; OFFSET moves their seeds, so that a run is one that nothing was tuned to; WORDS,
 //! divided by commas, keeps the cases in whose names one of them is. Each case is printed as it ends; then the tables of
-//! `docs/discovery.md`.
+//! `docs/discovery-figures.md`.
 
 #![allow(missing_docs, clippy::print_stdout, clippy::expect_used)]
 
