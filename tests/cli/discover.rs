@@ -459,3 +459,29 @@ fn what_hides_in_the_noise_of_a_short_log_is_told() {
     assert!(cable["tried"][0]["evidence"]["delta_bic"].as_f64().unwrap() < -30.0, "{cable}");
     assert!(run.stdout.contains("A longer log would") && !run.stdout.contains("Nothing is missing"), "{}", run.stdout);
 }
+
+/// A sensor that nobody tared is named also where something else is left that has no name. A free function of the time holds a zero too, and a piece of cable
+/// that rubs keeps the search busy.
+#[test]
+fn a_wrong_zero_is_named_beside_something_unknown() {
+    for disturbance in
+        ["warming:amplitude_n=0.08,period_s=17", "local_defect:drag_n=0.3,from_start_m=0.02,width_m=0.02"]
+    {
+        let place = Place::empty();
+        place.write("robot.toml", include_str!("../../examples/winch.toml"));
+        let simulate = ["simulate", "--model", "robot.toml", "-o", "log.mcap", "--duration", "40", "--seed", "3"];
+        let hidden = ["--effect", "sensor_offset:offset_n=1", "--disturbance", disturbance];
+        place.run(&[&simulate[..], &hidden].concat()).succeeds();
+        place.run(&["discover", "log.mcap", "--model", "robot.toml", "--json", "found.json"]).succeeds();
+        let cable = &place.json("found.json")["cables"][0];
+        let kinds: Vec<&str> =
+            cable["effects"].as_array().unwrap().iter().map(|of| of["kind"].as_str().unwrap()).collect();
+        assert_eq!(
+            (kinds.first().copied(), cable["verdict"].as_str()),
+            (Some("sensor_offset"), Some("unexplained")),
+            "{cable}"
+        );
+        let offset_n = cable["effects"][0]["parameters"]["offset_n"].as_f64().unwrap();
+        assert!((offset_n - 1.0).abs() < 0.1, "{disturbance}: {offset_n} N");
+    }
+}

@@ -498,3 +498,32 @@ fn what_is_fitted_is_told() {
     let told = headline(&["--model", "bench.toml", "--parameters", "sensor_gain.gain"]);
     assert!(told.contains("Only sensor_gain.gain is fitted; the model leaves"), "{told}");
 }
+
+/// Noise of the length that is a tenth of a per cent of the presliding wears friction away. The fit keeps it out, says so, and writes the play.
+#[test]
+fn a_trembling_length_is_kept_out_of_the_fit() {
+    let place = Place::empty();
+    place.write("robot.toml", bench_robot().replace("cycle_s = 0.001", "cycle_s = 0.004"));
+    for (noise_m, name) in [("0", "exact"), ("0.000002", "noisy")] {
+        let (log, file, json) = (format!("{name}.mcap"), format!("{name}.toml"), format!("{name}.json"));
+        let simulate =
+            ["simulate", "--model", "robot.toml", "-o", &log, "--duration", "40", "--length-noise-m", noise_m];
+        place.run(&simulate).succeeds();
+        place.run(&["fit", &log, "--model", "robot.toml", "-o", &file, "--json", &json]).succeeds();
+        let sigma_n_per_m = |file: &str| place.json(file)["cables"][0]["parameters"]["sigma_n_per_m"].as_f64().unwrap();
+        let ratio = sigma_n_per_m(&json) / sigma_n_per_m("exact.json");
+        assert!((0.95..1.05).contains(&ratio), "{name}: {ratio}");
+        let faults = &place.json(&json)["cables"][0]["faults"];
+        let written = String::from_utf8(place.read(&file)).unwrap();
+        assert_eq!(written.contains("length_noise_m = "), name == "noisy", "{written}");
+        if name == "noisy" {
+            let noise_m = faults[0]["parameters"]["noise_m"].as_f64().unwrap();
+            assert!(faults[0]["kind"] == "noisy_length" && (1.8e-6..2.2e-6).contains(&noise_m), "{faults}");
+            // With the written file it is known.
+            place.run(&["fit", &log, "--model", &file, "-o", "again.toml", "--json", "again.json"]).succeeds();
+            assert!(place.json("again.json")["cables"][0]["faults"].is_null());
+        } else {
+            assert!(faults.is_null(), "{faults}");
+        }
+    }
+}

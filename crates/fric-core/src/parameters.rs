@@ -67,7 +67,7 @@ pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
         min: -1e6,
         max: 1e6,
         fitted: true,
-        excitation: "a long run with a force sensor at the platform, or with poses throughout the workspace",
+        excitation: "long movements in both directions, with a force sensor at the platform or poses throughout the workspace",
     },
 ];
 /// Number of parameters of the robot file's `friction`.

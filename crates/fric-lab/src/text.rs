@@ -109,6 +109,7 @@ pub fn scaled_unit(value: f64, unit: &str) -> (f64, &str) {
     let small = value.abs() < 0.1;
     match unit {
         "s" if small => (1e3, "ms"),
+        "m" if value.abs() > 0.0 && value.abs() < 1e-4 => (1e6, "µm"),
         "m" if small => (1e3, "mm"),
         "m/s" if small => (1e3, "mm/s"),
         "kg" if small => (1e3, "g"),

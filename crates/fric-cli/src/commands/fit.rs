@@ -66,7 +66,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     let outcome = FitResult::new(&model.robot, &names, &fits).with_faults(&faults);
     warn_all(&outcome.warnings(&fits, &readiness));
     outcome.check_fitted()?;
-    let text = rewritten(&model.text, &model.origin, fits.cables())?;
+    let text = rewritten(&model.text, &model.origin, fits.cables(), &faults)?;
     let mut files = vec![Written::new(fitted_file.complete_with(&text)?, "the robot file with these values")];
     if let Some(report) = report {
         let page = report::fit::page(&outcome, fits.cables(), &json.provenance());

@@ -17,7 +17,20 @@ pub enum KnownReference {
     },
 }
 
+/// Greatest acceleration of quiet motion under a hanging mass, m/s²: 5 % of the weight. At half this value, ramps of 0.3 m/s² have no reference; at double,
+/// the mass may oscillate by 10 % of its weight after the end of a ramp.
+const QUIET_M_PER_S2: f64 = 0.5;
+
 impl KnownReference {
+    /// Returns the greatest acceleration of the cable up to which the force counts as known, m/s²: infinite for a constant force.
+    #[must_use]
+    pub fn quiet_m_per_s2(&self) -> f64 {
+        match self {
+            Self::Constant { .. } => f64::INFINITY,
+            Self::HangingMass { .. } => QUIET_M_PER_S2,
+        }
+    }
+
     /// Returns the cable force at the platform, N.
     ///
     /// For a hanging mass `F = m·(g − a)` by Newton's second law along the vertical, with the acceleration `a = d²l/dt²` of the paid-out length in

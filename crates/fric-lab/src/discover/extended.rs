@@ -1,10 +1,9 @@
 //! Writes the findings of a discovery into a robot file.
 
 use fric_core::parameters::Values;
-use fric_core::robot::edit::set_monitor;
 use fric_core::robot::file::{RobotFile, RobotFileError};
 
-use super::faults::Fault;
+use super::faults::length_noise::with_play;
 use super::report::CableDiscovery;
 use super::rest::empirical::is_idle;
 use crate::fit::Parameter;
@@ -37,14 +36,7 @@ pub fn extended(text: &str, origin: &str, discoveries: &[CableDiscovery]) -> Res
         })
         .collect();
     let text = with_values(text, origin, &new)?;
-    let of_length = |cable: &CableDiscovery| {
-        let fault = cable.faults.iter().find(|fault| fault.fault == Fault::NoisyLength)?;
-        fault.parameters.iter().find(|(key, _)| *key == "length_noise_m").map(|(_, value)| *value)
-    };
-    discoveries
-        .iter()
-        .find_map(of_length)
-        .map_or(Ok(text.clone()), |value| set_monitor(&text, origin, "length_noise_m", value))
+    with_play(text, origin, discoveries.iter().flat_map(|cable| &cable.faults))
 }
 
 /// Returns the parameters that no fit determines, but whose `given` values the log contradicts: their values in the extended model are some of many that

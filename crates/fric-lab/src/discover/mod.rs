@@ -21,7 +21,7 @@
 mod cable;
 mod effort;
 mod extended;
-mod faults;
+pub(crate) mod faults;
 mod figures;
 mod lag;
 pub(crate) mod naming;

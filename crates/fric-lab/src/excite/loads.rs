@@ -62,6 +62,11 @@ impl Loads {
         self.usual_n
     }
 
+    /// Whether nothing states the load of a test bench.
+    pub fn is_assumed(&self) -> bool {
+        matches!(self.source, Source::Bench { load: None })
+    }
+
     /// Returns the force at a fraction of the range, N; `None` if the run cannot set it.
     pub fn stated_n(&self, share: f64) -> Option<f64> {
         match self.source {

@@ -121,7 +121,7 @@ impl Excitation {
             Some(corners_m) => Some(stated_box(&platform, corners_m, tables, params.cables())?),
             None => Some(Workspace::find(&platform, &level)?.work_box),
         };
-        let limits = options.limits();
+        let limits = options.limits(params.known_reference().filter(|_| is_bench).as_ref());
         let run = |work_box: &WorkBox| match pieces {
             Some((pieces, duration_s)) => Trajectory::designed(work_box, &limits, pieces, duration_s),
             None => Trajectory::identification(work_box, &limits),

@@ -1,5 +1,7 @@
 //! Options of an identification run.
 
+use fric_core::KnownReference;
+
 use super::error::ExcitationError;
 use crate::trajectory::Limits;
 
@@ -21,7 +23,7 @@ pub struct ExcitationOptions {
     pub box_m: Option<[[f64; 3]; 2]>,
     /// Maximum speed of the platform, m/s; that of the run by default.
     pub max_speed_m_per_s: Option<f64>,
-    /// Maximum acceleration of the platform, m/s²; that of the run by default.
+    /// Maximum acceleration of the platform, m/s²; that of the run by default, and under a hanging mass 0.4 m/s², at which its force counts as known.
     pub max_acceleration_m_per_s2: Option<f64>,
     /// Minimum cable force at the platform, N; that of the simulation by default.
     pub min_tension_n: Option<f64>,
@@ -58,10 +60,12 @@ impl ExcitationOptions {
         }
     }
 
-    pub(super) fn limits(&self) -> Limits {
+    /// Returns the limits of a run under a load that may be known.
+    pub(super) fn limits(&self, known: Option<&KnownReference>) -> Limits {
+        let of_load = Limits::of_load(known);
         Limits {
-            speed_m_per_s: self.max_speed_m_per_s.unwrap_or(Limits::NONE.speed_m_per_s),
-            acceleration_m_per_s2: self.max_acceleration_m_per_s2.unwrap_or(Limits::NONE.acceleration_m_per_s2),
+            speed_m_per_s: self.max_speed_m_per_s.unwrap_or(of_load.speed_m_per_s),
+            acceleration_m_per_s2: self.max_acceleration_m_per_s2.unwrap_or(of_load.acceleration_m_per_s2),
         }
     }
 

@@ -21,7 +21,7 @@ use crate::samples::selection::Standing;
 use crate::search::gang::{Gang, Seat};
 use crate::search::pass::Forces;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
-use crate::search::solve::{NEAR_ERRORS, Solution, solve};
+use crate::search::solve::{NEAR_ERRORS, Solution, Unknown, solve};
 use crate::search::vector::Parameter;
 use crate::set_up::SetUp;
 
@@ -167,11 +167,28 @@ impl<'a> Search<'a> {
             (solution, standings) = solve_without_warm_up(vec![solution.values]);
             solution.evaluation_count += evaluation_count;
         }
+        if options.is_zero_confused(record) && !solution.unknowns.is_empty() {
+            solution.undetermined.extend(
+                Parameter::all().filter(|of| of.place() == OFFSET).map(|parameter| Unknown { member: 0, parameter }),
+            );
+        }
         Self { problem, start, solution, standings }
     }
 }
 
 impl Search<'_> {
+    /// Returns what the solution leaves, N: the compensated force minus the reference, NaN for samples that do not count.
+    pub fn residuals_n(&self) -> Vec<f64> {
+        let mut left_n = vec![f64::NAN; self.standings.len()];
+        let problem = Problem { used: used(&self.standings), ..self.problem.clone() };
+        problem.residuals(&self.solution.values, |sample, residuals| {
+            if let (Some(left_n), [residual_n]) = (left_n.get_mut(sample), residuals) {
+                *left_n = *residual_n;
+            }
+        });
+        left_n
+    }
+
     /// Returns the zero of each log; nothing if all logs have the same.
     fn log_zeros(&self) -> Vec<Option<LogZeroEstimate>> {
         self.solution.values.first().map_or_else(Vec::new, |values| log_zeros(&self.problem, values))

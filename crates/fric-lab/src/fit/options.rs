@@ -21,7 +21,7 @@ pub struct FitOptions {
 
 impl FitOptions {
     /// Returns the free parameters of a cable that all its logs share: not the zero that each log has of its own, nor by default the other zero, whose
-    /// effect on the force is nearly the same.
+    /// effect on the force is nearly the same. By default a cable that moves one way only has no zero free either.
     pub(crate) fn shared(&self, record: &CableRecord<'_>) -> Vec<Parameter> {
         let mut free = self.free(record.params);
         if let Some(per_log) = record.per_log {
@@ -31,7 +31,16 @@ impl FitOptions {
             };
             free.retain(|parameter| !is_zero(parameter));
         }
+        if self.is_zero_confused(record) {
+            free.retain(|parameter| parameter.place() != OFFSET);
+        }
         free
+    }
+
+    /// Whether nothing tells the zero at the platform from friction. A search would not notice: with a reference that stays, friction as large as the force
+    /// beside a zero as large agrees with any log.
+    pub(crate) fn is_zero_confused(&self, record: &CableRecord<'_>) -> bool {
+        self.parameters.is_none() && record.is_one_way()
     }
 
     /// Returns the free parameters of a cable.

@@ -112,6 +112,9 @@ pub struct FitCableResult {
     pub standard_errors: Numbers,
     /// Parameters that the samples do not determine; they keep the given value.
     pub undetermined: Vec<String>,
+    /// Parameters whose given value the samples contradict without determining another; they have the best value found, and no standard error.
+    #[serde(skip)]
+    pub contradicted: Vec<String>,
     /// What each log has of its own, in the order of the logs; absent if they share all parameters. `parameters` has the value of the last log.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub per_log: Vec<LogValues>,
@@ -387,6 +390,8 @@ fn cable_result(name: &str, fit: &CableFit, names: &[&str], logs: &[String]) -> 
         (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
     };
     let error = |parameter: &Parameter| Some((parameter.to_string(), fit.standard_error(parameter)?));
+    let is_contradicted =
+        |parameter: &&Parameter| fit.standard_error(parameter).is_none() && !fit.at_bound.contains(parameter);
     let samples = fit.samples;
     FitCableResult {
         name: name.to_owned(),
@@ -402,6 +407,7 @@ fn cable_result(name: &str, fit: &CableFit, names: &[&str], logs: &[String]) -> 
         parameters: Numbers(Parameter::all().filter_map(|parameter| shown(&parameter)).collect()),
         standard_errors: Numbers(Parameter::all().filter_map(|parameter| error(&parameter)).collect()),
         undetermined: fit.undetermined.iter().map(ToString::to_string).collect(),
+        contradicted: fit.fitted.iter().filter(is_contradicted).map(ToString::to_string).collect(),
         per_log: LogValues::of_logs(&fit.per_log, logs),
         open: fit.open.iter().filter_map(|open| open_result(open, names)).collect(),
         at_bound: fit.at_bound.iter().map(ToString::to_string).collect(),

@@ -7,14 +7,21 @@ use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
 use fric_core::robot::file::{RobotFile, RobotFileError};
 
 use super::report::CableFit;
+use crate::discover::RecordingFault;
+use crate::discover::faults::length_noise::with_play;
 use crate::search::vector::Parameter;
 
-/// Returns the text of a robot file with the fitted values of its cables, in the robot's order; everything else stays as written. `origin` names the
-/// source of the file in error messages.
+/// Returns the text of a robot file with the fitted values of its cables, in the robot's order, and the monitor's `length_noise_m` where the `faults` of
+/// a cable include a noisy length; everything else stays as written. `origin` names the source of the file in error messages.
 ///
 /// # Errors
 /// Returns the [`RobotFileError`] of [`rewrite`].
-pub fn rewritten(text: &str, origin: &str, fits: &[CableFit]) -> Result<String, RobotFileError> {
+pub fn rewritten(
+    text: &str,
+    origin: &str,
+    fits: &[CableFit],
+    faults: &[Vec<RecordingFault>],
+) -> Result<String, RobotFileError> {
     let robot = RobotFile::parse(text, origin)?;
     let new = |(fit, cable): (&'_ CableFit, &CableParams)| {
         let given = cable.values();
@@ -27,7 +34,7 @@ pub fn rewritten(text: &str, origin: &str, fits: &[CableFit]) -> Result<String, 
     };
     let parameters: Vec<Vec<Parameter>> = fits.iter().zip(robot.params().cables()).map(new).collect();
     let new = fits.iter().zip(parameters).map(|(fit, parameters)| NewValues { values: &fit.values, parameters });
-    with_values(text, origin, &new.collect::<Vec<_>>())
+    with_play(with_values(text, origin, &new.collect::<Vec<_>>())?, origin, faults.iter().flatten())
 }
 
 /// The new values of a cable.

@@ -65,7 +65,7 @@ impl Shown {
         Some(value_of(numbers, self.place)? * self.factor)
     }
 
-    /// Returns the value, in brackets if it is not identified but taken from the robot file.
+    /// Returns the value, in brackets if it is not identified.
     fn value(&self, cable: &FitCableResult) -> String {
         let text = self.of(&cable.parameters).map(|value| number(value, self.digits));
         let is_at_bound = name_of(self.place).is_some_and(|name| cable.at_bound.contains(&name));
@@ -183,15 +183,17 @@ fn legend(result: &FitResult) -> String {
         text.push('\n');
         text += &wrapped("", LEGEND);
     }
-    let is_kept = |cable: &FitCableResult| {
-        let friction =
-            || cable.parameters.0.iter().filter(|(name, _)| Parameter::named(name).is_some_and(|p| p.is_friction()));
-        friction().any(|(name, _)| cable.standard_errors.get(name).is_none() && !cable.at_bound.contains(name))
-    };
-    if result.cables.iter().any(is_kept) {
+    let is_bracketed = |cable: &FitCableResult| FRICTION.iter().any(|shown| shown.value(cable).starts_with('('));
+    if result.cables.iter().any(is_bracketed) {
+        let is_contradicted = |cable: &FitCableResult| !cable.contradicted.is_empty();
+        let kept = if result.cables.iter().any(is_contradicted) {
+            "not identified"
+        } else {
+            "not identified but kept from the robot file"
+        };
         let mean = if result.cables.len() > 1 { ", and left out of the mean, as are values at a bound" } else { "" };
         text.push('\n');
-        text += &wrapped("", &format!("(…) is not identified but kept from the robot file{mean}."));
+        text += &wrapped("", &format!("(…) is {kept}{mean}."));
     }
     text
 }
@@ -305,6 +307,25 @@ fn undetermined(result: &FitResult) -> String {
                 listed(&cables, result),
                 parameter.row().excitation
             );
+        }
+    }
+    for cable in &learned {
+        for name in &cable.contradicted {
+            let Some(parameter) = Parameter::named(name) else { continue };
+            // Contacts that do not yield have no σ.
+            let others = cable.parameters.get(name).map_or_else(
+                || "contacts that do not yield agree with it".to_owned(),
+                |value| {
+                    format!("{} {} is one of many values that agree with it", significant(value), parameter.row().unit)
+                },
+            );
+            let shown = shown_name(&parameter);
+            let sentence = format!(
+                "The log contradicts the given {shown} of {} without determining another; {others}.",
+                cable.name
+            );
+            text.push('\n');
+            text += &wrapped("", &sentence);
         }
     }
     for cable in &learned {

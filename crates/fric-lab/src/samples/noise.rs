@@ -6,6 +6,9 @@
 
 /// Number of samples in a block.
 const BLOCK: usize = 200;
+/// The same for a signal that rests now and then, and the number of such blocks that tell as much as one long one. A run may not rest for longer.
+const REST_BLOCK: usize = 50;
+const FEWEST_REST_BLOCKS: usize = 4;
 /// Binomial coefficients of the difference, and the root of the sum of their squares.
 const COEFFICIENTS: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 const NORM: f64 = 8.366_600_265_340_756;
@@ -52,16 +55,24 @@ pub fn white_noise_in(residual: &[f64], block: usize) -> Option<f64> {
 
 /// Returns the same for a signal that itself changes, if the noise is permanent, from the blocks in which the signal changes by less than `usual_change`
 /// standard deviations of the noise from sample to sample. Where it changes faster, uncertain times of the samples look like noise. Returns `None` if
-/// there is no such block, or a tenth of them has less than half of the noise, as with the steps of a resolution while nothing moves.
+/// there are too few such blocks, or a tenth of all has less than half of the noise, as with the steps of a resolution while nothing moves, or where the signal
+/// only looks like noise when it starts to move.
 pub fn lasting_white_noise(signal: &[f64], usual_change: f64) -> Option<f64> {
     // White noise alone changes by √2 standard deviations from sample to sample.
     let most = 2.0 + usual_change * usual_change;
-    let blocks = blocks_of(signal, BLOCK, |window| [fourth_difference(window), window[2] - window[1]]);
-    let mut squares: Vec<f64> =
-        blocks.into_iter().filter(|[square, change]| *change < most * square).map(|[square, _]| square).collect();
-    squares.sort_unstable_by(f64::total_cmp);
-    let [quiet, median] = [*squares.get(squares.len() / 10)?, *squares.get(squares.len() / 2)?];
-    (quiet > 0.25 * median).then(|| (median * mean_per_median(BLOCK)).sqrt())
+    let blocks = blocks_of(signal, REST_BLOCK, |window| [fourth_difference(window), window[2] - window[1]]);
+    let of_quantile = |mut squares: Vec<f64>, divisor: usize| {
+        let place = squares.len() / divisor;
+        (place < squares.len()).then(|| *squares.select_nth_unstable_by(place, f64::total_cmp).1)
+    };
+    let resting: Vec<f64> =
+        blocks.iter().filter(|[square, change]| *change < most * square).map(|[square, _]| *square).collect();
+    if resting.len() < FEWEST_REST_BLOCKS {
+        return None;
+    }
+    let median = of_quantile(resting, 2)?;
+    let quiet = of_quantile(blocks.iter().map(|[square, _]| *square).collect(), 10)?;
+    (quiet > 0.25 * median).then(|| (median * mean_per_median(REST_BLOCK)).sqrt())
 }
 
 /// The same with the stretches that have more: root mean square over all blocks. An encoder's steps, for one, make noise of a model's

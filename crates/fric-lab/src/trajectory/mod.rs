@@ -9,7 +9,7 @@ mod designed;
 mod identification;
 mod stroke;
 
-use fric_core::Pose;
+use fric_core::{KnownReference, Pose};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::axis::{CartesianAxis, rotation};
@@ -43,6 +43,9 @@ impl WorkBox {
     }
 }
 
+/// Fraction of the greatest acceleration under which the force of a load is known that a run makes use of.
+const QUIET_RATIO: f64 = 0.8;
+
 /// Limits for a run's own speeds and accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -55,6 +58,13 @@ pub struct Limits {
 impl Limits {
     /// No limits: the run is unchanged.
     pub const NONE: Self = Self { speed_m_per_s: f64::INFINITY, acceleration_m_per_s2: f64::INFINITY };
+
+    /// Returns the limits under which the force of a load stays known; some room is left for the noise of the length.
+    #[must_use]
+    pub fn of_load(known: Option<&KnownReference>) -> Self {
+        let quiet_m_per_s2 = known.map_or(f64::INFINITY, KnownReference::quiet_m_per_s2);
+        Self { acceleration_m_per_s2: QUIET_RATIO * quiet_m_per_s2, ..Self::NONE }
+    }
 }
 
 /// The purpose of a part of a run.

@@ -54,7 +54,7 @@ fn what_an_effect_needs_is_written() {
     let text = bench(PULLEYS, GIVEN).to_toml().unwrap();
     let log = log(&["load_nonlinearity:exponent=0.8,reference_n=8.0"]);
     let fits = log.fit(&RobotFile::parse(&text, "bench").unwrap(), &options(&["load_nonlinearity.exponent"]));
-    let written = RobotFile::parse(&rewritten(&text, "bench", &fits).unwrap(), "written").unwrap();
+    let written = RobotFile::parse(&rewritten(&text, "bench", &fits, &[]).unwrap(), "written").unwrap();
     let values = written.params().cables()[0].values();
     assert!(values.iter().zip(&fits[0].values).all(|(written, fitted)| written.to_bits() == fitted.to_bits()));
     assert!((value(&fits[0], "load_nonlinearity.exponent") - 0.8).abs() < 0.02);

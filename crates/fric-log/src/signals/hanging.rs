@@ -3,7 +3,7 @@
 //! The force at the platform is `m·(g − a)` ([`KnownReference`]). The acceleration `a` comes from the length: its second difference over rows at
 //! least [`WINDOW_NANOS`] apart, which is the mean acceleration under a triangular window of that width. This requires quiet motion: with jerk within
 //! the window the mean differs from the momentary acceleration, and afterwards the mass oscillates on the elastic cable, which the length does not
-//! show. So a row has a reference only if all accelerations within the window are at most [`GREATEST_ACCELERATION_M_PER_S2`], and the first and last
+//! show. So a row has a reference only if all accelerations within the window are at most [`KnownReference::quiet_m_per_s2`], and the first and last
 //! rows of a log have none. Rows are delayed by twice the window.
 
 use std::collections::VecDeque;
@@ -17,9 +17,6 @@ use super::waiting::Row;
 const WINDOW_NANOS: i64 = 20_000_000;
 /// Rows further apart than this say nothing about the acceleration between them.
 const FARTHEST_NANOS: i64 = 10 * WINDOW_NANOS;
-/// Greatest acceleration of quiet motion, m/s²: 5 % of the weight. At half this value, ramps of 0.3 m/s² have no reference; at double, the mass may
-/// oscillate by 10 % of its weight after the end of a ramp.
-const GREATEST_ACCELERATION_M_PER_S2: f64 = 0.5;
 
 /// Rows that wait for their reference.
 #[derive(Debug)]
@@ -93,9 +90,9 @@ impl HangingRows {
         }
         let acceleration =
             |index: usize, cable: usize| self.rows.get(index)?.accelerations_m_per_s2.get(cable).copied();
-        let is_quiet = |index: usize, cable: usize| {
-            acceleration(index, cable).is_some_and(|now| now.abs() <= GREATEST_ACCELERATION_M_PER_S2)
-        };
+        let greatest_m_per_s2 = self.reference.quiet_m_per_s2();
+        let is_quiet =
+            |index: usize, cable: usize| acceleration(index, cable).is_some_and(|now| now.abs() <= greatest_m_per_s2);
         let of_cable = |(cable, input): (usize, &CableInput)| {
             let is_known = input.sensor_force_n.is_finite() && around.iter().all(|index| is_quiet(*index, cable));
             acceleration(self.next, cable).filter(|_| is_known).map_or(f64::NAN, |now| self.reference.force_n(now))

@@ -99,7 +99,7 @@ pub fn fit(
     let result = FitResult::new(file, &runs.names(), &fits).with_faults(&faults);
     log::warn(py, &result.warnings(&fits, &readiness))?;
     result.check_fitted()?;
-    let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables())?;
+    let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables(), &faults)?;
     let cable = |(fit, residuals_n): (&CableFit, Vec<f64>)| {
         let count = fit.fitted.len();
         // Matrices are stored by columns, arrays by rows.

@@ -66,7 +66,7 @@ pub fn page(
             section { h2 { "Length of the cables" } (PreEscaped(length(series))) }
         }
         section {
-            h2 { @if excitation.work_box().is_some() { "Speed of the platform" } @else { "Speed of the cables" } }
+            h2 { @if excitation.work_box().is_some() { "Speed of the platform" } @else { "Speed of the cables, without its sign" } }
             (PreEscaped(speed(series)))
         }
         @if let Some(tension_n) = series.tension_n() {

@@ -8,31 +8,29 @@ use crate::discover::faults::{RecordingFault, faulty_stretches, leave_out};
 use crate::discover::readiness::lack_of;
 use crate::discover::report::{CableDiscovery, Model};
 use crate::discover::workbench::{self, Workbench};
+use crate::fit::cables::{Search, prepared, used};
 use crate::fit::{CableRecord, FitOptions, Parameter, Row};
 use crate::replay::Deviation;
 use crate::samples::held::repeated_forces;
 use crate::samples::split::split;
-
-/// Returns the sum of squares, N², of the given model over the held-out samples after fitting it to the training samples. Returns `None` where the
-/// log cannot tell.
-pub fn held_out_squares(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<f64> {
-    let (counts, start) = given_to(record, stop)?;
-    let (blocks, measured) = (split(record), crate::samples::interpolated::measured(record));
-    let bench = Workbench { record: *record, blocks: &blocks, counts: &counts, measured: &measured, stop };
-    Some(bench.try_one(&start).held_out)
-}
+use crate::search::gang::{Gang, Seat};
 
 /// Returns which samples count, and the given model with start values from the data.
 pub fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool>, workbench::Model)> {
+    let gang = Gang::new(1, stop);
+    let paper = fitted_to(record, gang.seat(0), stop)?;
+    let (start, _) = given_model(record, &paper.solution);
+    Some((used(&paper.standings), start))
+}
+
+/// Fits the given model to all samples that count. Returns `None` where the log cannot tell.
+pub fn fitted_to<'a>(record: &CableRecord<'a>, seat: Seat<'a>, stop: &'a AtomicBool) -> Option<Search<'a>> {
     if lack_of(record).is_some() {
         return None;
     }
-    let mut standings = crate::fit::cables::prepared(record);
+    let mut standings = prepared(record);
     leave_out(record, &faulty_stretches(record), &mut standings);
-    let gang = crate::search::gang::Gang::new(1, stop);
-    let paper = crate::fit::cables::Search::run(record, &standings, &FitOptions::default(), stop, gang.seat(0));
-    let (start, _) = given_model(record, &paper.solution);
-    Some((crate::fit::cables::used(&paper.standings), start))
+    Some(Search::run(record, &standings, &FitOptions::default(), stop, seat))
 }
 
 /// Adds faults that were corrected for the whole log, the last one first. The given model is the one without the corrections.

@@ -26,7 +26,7 @@ use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
 use crate::samples::steps::CoarseSteps;
 
-pub use given::{acts, add_corrected_faults, given_to, held_out_squares};
+pub use given::{acts, add_corrected_faults, fitted_to, given_to};
 
 /// The steps of a converter are reported if rounding makes at least this fraction of the noise variance.
 const LEAST_ROUNDING: f64 = 0.1;
@@ -91,7 +91,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
         raw.with_references(&references_n).passes(start, &held)
     };
     let signals = motion_and_load(record);
-    let mut heard = Oscillations::lines_of(&left_by(&bench.try_one(&start).values), &times, &signals);
+    let mut heard = Oscillations::lines_of(&left_by(&bench.try_one(&start).values), &times, record, &signals);
     let Some(mut outcome) = search(&heard, &mut start) else {
         return Ok(CableDiscovery::untold(record, samples, lack_of_noise()));
     };

@@ -98,9 +98,9 @@ pub struct CorrectedFit {
     pub faults: Vec<Vec<RecordingFault>>,
 }
 
-/// Runs [`fit_cables`], and runs it again with late or early references moved to their correct times. A cable keeps its first fit if that fit's residual is
-/// not correlated with the rate of the reference, or if the second fit leaves more than noise. `take_residual_n` takes the [`residuals_n`] of each cable
-/// in turn, with the reference that it was fitted to.
+/// Runs [`fit_cables`] without the noise of the lengths where it matters, and runs it again with late or early references moved to their correct times. A
+/// cable keeps its first fit if that fit's residual is not correlated with the rate of the reference, or if the second fit leaves more than noise.
+/// `take_residual_n` takes the [`residuals_n`] of each cable in turn, with the reference that it was fitted to.
 ///
 /// # Errors
 /// Returns the [`StoreError`] of a log that does not fit into memory.
@@ -111,11 +111,16 @@ pub fn fit_cables_corrected(
     mut take_residual_n: impl FnMut(Vec<f64>),
 ) -> Result<CorrectedFit, StoreError> {
     let mut all = CorrectedFit::default();
+    let noise = LengthNoise::of(samples, progress.stop_flag())?;
     for group in samples.groups() {
-        let (fits, left_n) = fit_group(&*samples.load(group)?, options, progress);
+        let measurements = length_noise::steadied(samples.load(group)?, noise.as_ref());
+        let (fits, left_n) = fit_group(&measurements, options, progress);
         all.cables.extend(fits.cables);
         all.faults.extend(fits.faults);
         left_n.into_iter().for_each(&mut take_residual_n);
+    }
+    for (faults, of_length) in all.faults.iter_mut().zip(noise.into_iter().flat_map(|noise| noise.faults)) {
+        faults.extend(of_length);
     }
     Ok(all)
 }

@@ -8,6 +8,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
+use super::passes::Passes;
 use super::spectrum::{NEIGHBOURS, Occurrence, STRETCH, Spectrum, Times, Together, goes_on, occurrences};
 use super::{Fault, RecordingFault};
 
@@ -17,6 +18,9 @@ const LEAST_RATIO: f64 = 12.0;
 const FEWEST_TURNS: usize = 8;
 /// Maximum number of lines.
 const MOST_LINES: usize = 8;
+/// Least share of a line's power that has to be left without what repeats each time the cable passes a place. Harmonics of strokes that take not quite the same
+/// time are in no narrow line of the motion.
+const LEAST_UNREPEATED: f64 = 0.5;
 /// And the least share of the noise's power that one has to have.
 pub const LEAST_SHARE: f64 = 0.01;
 
@@ -77,7 +81,7 @@ impl Line {
 }
 
 /// Returns the lines of a residual that are unrelated to motion and load, the strongest first. The residual is NaN where there is no sample.
-pub fn lines(residual: &[f64], times: &Times, signals: &[Together<'_>]) -> Vec<Line> {
+pub fn lines(residual: &[f64], times: &Times, signals: &[Together<'_>], passes: &Passes) -> Vec<Line> {
     let mut rest = residual.to_vec();
     let mut lines = Vec::new();
     while lines.len() < MOST_LINES {
@@ -89,8 +93,13 @@ pub fn lines(residual: &[f64], times: &Times, signals: &[Together<'_>]) -> Vec<L
         let frequencies: Vec<f64> = lines.iter().map(|line: &Line| line.frequency_hz).collect();
         // What makes a line that goes on throughout the log does so itself.
         let mut in_motion = occurrences(&frequencies, signals, times).into_iter();
+        let unrepeated = passes.less_what_repeats(residual);
+        let power = |of: &[f64], line: &Line| project(of, line.frequency_hz, times).amplitude().powi(2);
+        let repeats = |line: &Line| power(&unrepeated, line) < LEAST_UNREPEATED * power(residual, line);
         lines.retain(|line| {
-            in_motion.next() != Some(Occurrence::Throughout) && goes_on(powers(line.frequency_hz, residual, times))
+            in_motion.next() != Some(Occurrence::Throughout)
+                && goes_on(powers(line.frequency_hz, residual, times))
+                && !repeats(line)
         });
     }
     lines
@@ -215,7 +224,7 @@ mod tests {
             let (height, phase) = if row < 30_000 { (1.0, 0.4) } else { (2.0, 2.0) };
             residual[row] += height * (TAU * 50.02 * *place * 1e-3 + phase).sin();
         }
-        let found = lines(&residual, &of_logs, &[]);
+        let found = lines(&residual, &of_logs, &[], &Passes::none());
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.02).abs() < 1e-3);
         // 30,000 samples have the height 1, and 20,000 have the height 2.
@@ -233,7 +242,7 @@ mod tests {
             let time_s = cycle as f64 * 1e-3;
             *number += 1.3 * (TAU * 50.02 * time_s + 0.4).sin() + 0.4 * (TAU * 150.06 * time_s).cos();
         }
-        let found = lines(&residual, &times(residual.len()), &[]);
+        let found = lines(&residual, &times(residual.len()), &[], &Passes::none());
         assert_eq!(found.len(), 2, "{found:?}");
         assert!((found[0].frequency_hz - 50.02).abs() < 1e-3 && (found[0].amplitude() - 1.3).abs() < 0.03);
         assert!((found[1].frequency_hz - 150.06).abs() < 2e-3 && (found[1].amplitude() - 0.4).abs() < 0.03);
@@ -251,16 +260,16 @@ mod tests {
             *number += 0.8 * (TAU * 16.0 * time_s + 0.3).sin() + 0.8 * (TAU * 50.0 * time_s).sin();
         }
         let of_log = times(residual.len());
-        assert_eq!(lines(&residual, &of_log, &[]).len(), 2);
+        assert_eq!(lines(&residual, &of_log, &[], &Passes::none()).len(), 2);
         let signal = |numbers: &[f64]| -> Signal<'static> {
             let numbers = numbers.to_vec();
             Box::new(move |row| numbers[row])
         };
-        let found = lines(&residual, &of_log, &[vec![signal(&motion)]]);
+        let found = lines(&residual, &of_log, &[vec![signal(&motion)]], &Passes::none());
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.0).abs() < 1e-2);
         // A line in one sensor alone may be that sensor's own hum.
-        assert_eq!(lines(&residual, &of_log, &[vec![signal(&motion), signal(&noise(6))]]).len(), 2);
+        assert_eq!(lines(&residual, &of_log, &[vec![signal(&motion), signal(&noise(6))]], &Passes::none()).len(), 2);
     }
 
     /// A motion that oscillates at 50 Hz in its first second only does not cause a line that goes on for the whole of a log.
@@ -280,9 +289,9 @@ mod tests {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place of the spectrum")]
         let height = Spectrum::of(&motion, &of_log).unwrap().over_median(place as usize).unwrap();
         assert!(height > 10.0, "{height}");
-        assert_eq!(lines(&residual, &of_log, &[signal(motion)]).len(), 1);
+        assert_eq!(lines(&residual, &of_log, &[signal(motion)], &Passes::none()).len(), 1);
         let throughout = residual.iter().zip(noise(9)).map(|(number, noise)| number + noise).collect();
-        assert_eq!(lines(&residual, &of_log, &[signal(throughout)]), []);
+        assert_eq!(lines(&residual, &of_log, &[signal(throughout)], &Passes::none()), []);
     }
 
     /// A hum that stops for three of five seconds is something else. One whose frequency wanders as that of the mains does is a hum.
@@ -299,16 +308,18 @@ mod tests {
             *other += (TAU * turns).sin();
         }
         let of_log = times(now_and_then.len());
-        assert_eq!(lines(&now_and_then, &of_log, &[]), []);
-        assert!(lines(&of_mains, &of_log, &[]).iter().all(|line| (line.frequency_hz - 50.0).abs() < 0.1));
-        assert!(!lines(&of_mains, &of_log, &[]).is_empty());
+        assert_eq!(lines(&now_and_then, &of_log, &[], &Passes::none()), []);
+        assert!(
+            lines(&of_mains, &of_log, &[], &Passes::none()).iter().all(|line| (line.frequency_hz - 50.0).abs() < 0.1)
+        );
+        assert!(!lines(&of_mains, &of_log, &[], &Passes::none()).is_empty());
     }
 
     #[test]
     fn noise_and_wander_have_none() {
         for seed in 0..20 {
             let white = noise(seed);
-            assert_eq!(lines(&white, &times(white.len()), &[]), []);
+            assert_eq!(lines(&white, &times(white.len()), &[], &Passes::none()), []);
             let mut level = 0.0;
             let wander: Vec<f64> = white
                 .iter()
@@ -317,7 +328,7 @@ mod tests {
                     level + 0.3 * number
                 })
                 .collect();
-            assert_eq!(lines(&wander, &times(wander.len()), &[]), []);
+            assert_eq!(lines(&wander, &times(wander.len()), &[], &Passes::none()), []);
         }
     }
 }

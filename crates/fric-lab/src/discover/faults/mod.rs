@@ -8,6 +8,7 @@ pub mod correction;
 pub mod length_noise;
 pub mod lines;
 pub mod oscillations;
+pub mod passes;
 pub mod spectrum;
 pub mod timing;
 pub mod vibration;
@@ -32,6 +33,10 @@ const AGREEMENT: f64 = 4.0;
 const OUTLIER_RATIO: f64 = 6.0;
 /// A spike that no fit has seen also exceeds this fraction of the force. Friction of 8 % that reverses for one cycle makes 16 %.
 const FRICTION_RATIO: f64 = 0.25;
+/// Where the speed of the cable changes by more than in this fraction of the samples, and by more than this multiple of the median, the force of a mass may
+/// be one sample long too, at 10 Hz that of a drum. One spike in fifty may fall there.
+const QUICK_QUANTILE: f64 = 0.98;
+const QUICK_RATIO: f64 = 4.0;
 /// Least time that is left out after a faulty stretch, s.
 const AFTER_S: f64 = 0.1;
 /// Two stretches closer than this are merged, s.
@@ -100,7 +105,9 @@ pub fn faulty_stretches(record: &CableRecord<'_>) -> Vec<FaultyStretch> {
             stretches.push(FaultyStretch { fault: Fault::Frozen, cycles: run });
         }
     }
-    stretches.extend(spikes(&shown).map(|cycles| FaultyStretch { fault: Fault::Spikes, cycles }));
+    let quick = quick_changes(record);
+    let spikes = spikes(&shown).filter(|spike| !quick(spike.start));
+    stretches.extend(spikes.map(|cycles| FaultyStretch { fault: Fault::Spikes, cycles }));
     stretches.sort_by_key(|stretch| (stretch.cycles.start, stretch.cycles.end));
     merged(stretches, record.interval_s)
 }
@@ -111,6 +118,7 @@ pub fn spikes_among(record: &CableRecord<'_>, standings: &[Standing]) -> Vec<Fau
     if !standings.contains(&Standing::Outlier) {
         return Vec::new();
     }
+    let quick = quick_changes(record);
     let (of_sensor, usual_n) = jumps(&record.shown_forces_n());
     let (of_reference, usual_reference_n) = jumps(record.references_n);
     let is_outlier = |place: usize| standings.get(place) == Some(&Standing::Outlier);
@@ -118,10 +126,33 @@ pub fn spikes_among(record: &CableRecord<'_>, standings: &[Standing]) -> Vec<Fau
         let [sensor_ratio, reference_ratio] = [sensor.off_n / usual_n, reference.off_n / usual_reference_n];
         // A spike of the reference may stand where friction turns.
         let is_of_sensor = sensor.is_alone && (reference_ratio.is_nan() || reference_ratio <= sensor_ratio);
-        is_outlier(*place) && is_of_sensor && sensor_ratio > OUTLIER_RATIO
+        is_outlier(*place) && is_of_sensor && sensor_ratio > OUTLIER_RATIO && !quick(*place)
     };
     let alone = of_sensor.iter().zip(&of_reference).enumerate().filter(is_spike);
     alone.map(|(place, _)| FaultyStretch { fault: Fault::Spikes, cycles: place..place + 1 }).collect()
+}
+
+/// Returns whether the speed of the cable changes at a sample as it hardly does elsewhere.
+fn quick_changes<'a>(record: &CableRecord<'a>) -> impl Fn(usize) -> bool + use<'a> {
+    let rows = record.rows;
+    let change = move |place: usize| {
+        let speed_m_per_s = |place: usize| rows.get(place).map(|row| row.signals.speed_m_per_s);
+        let change = speed_m_per_s(place + 1)? - speed_m_per_s(place.checked_sub(1)?)?;
+        Some(change.abs()).filter(|change| change.is_finite())
+    };
+    let mut changes: Vec<f64> = (0..rows.len()).filter_map(change).collect();
+    let mut quantile = |ratio: f64| {
+        #[expect(
+            clippy::cast_precision_loss,
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a place"
+        )]
+        let place = (ratio * changes.len() as f64) as usize;
+        if changes.is_empty() { f64::INFINITY } else { *changes.select_nth_unstable_by(place, f64::total_cmp).1 }
+    };
+    let least = quantile(QUICK_QUANTILE).max(QUICK_RATIO * quantile(0.5));
+    move |place| change(place).is_some_and(|change| change > least)
 }
 
 /// Returns the places at which a signal jumps away and back: it is far from its neighbours on both sides, and the neighbours agree. Noise does not do
@@ -243,11 +274,14 @@ pub fn leave_out(record: &CableRecord<'_>, stretches: &[FaultyStretch], standing
 
 #[cfg(test)]
 mod tests {
+    use fric_core::robot::file::RobotFile;
+    use fric_core::{CableInput, Sample};
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 
     use super::*;
+    use crate::fit::{Measurements, Reference};
 
     /// A force of 10 ± 3 N with 0.01 N of noise, written with steps of `step_n`; each value is shown `times` times.
     fn shown_n(step_n: f64, times: usize) -> Vec<f64> {
@@ -256,6 +290,39 @@ mod tests {
         let force_n = |(place, noise): (i32, f64)| 10.0 + 3.0 * (0.002 * f64::from(place)).sin() + 0.01 * noise;
         let stepped_n = (0..4000).zip(noise).map(force_n).map(|force_n| (force_n / step_n).round() * step_n);
         stepped_n.flat_map(|force_n| std::iter::repeat_n(force_n, times)).collect()
+    }
+
+    /// A drum that starts within a sample, as at 10 Hz, moves its own mass: that is no spike of the sensor, and a force that jumps elsewhere is.
+    #[test]
+    fn the_force_of_an_acceleration_is_no_spike() {
+        let robot = RobotFile::parse(
+            "format = \"fric-robot/1\"\nname = \"drum\"\ncycle_s = 0.1\n[[cable]]\nname = \"w\"\npulleys = [{ wrap_deg = 180.0 }]\n\
+             friction = { mu = 0.02 }\n",
+            "drum",
+        )
+        .unwrap();
+        let params = robot.params();
+        let mut measurements = Measurements::new(&params, Reference::Forces);
+        measurements.start_log();
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut length_m = 0.0;
+        for cycle in 0_i32..600 {
+            let noise: f64 = StandardNormal.sample(&mut random);
+            // The speed changes between two cycles, and the force of the drum's mass is that of the change around it.
+            let speed_m_per_s = if cycle < 300 { 0.0 } else { 2.0 };
+            length_m += 0.1 * speed_m_per_s;
+            let jump_n = if [100, 300, 500].contains(&cycle) { 800.0 } else { 0.0 };
+            measurements.add(&Sample {
+                stamp_nanos: i64::from(cycle) * 100_000_000,
+                cables: &[CableInput { sensor_force_n: 1000.0 + 5.0 * noise + jump_n, length_m, speed_m_per_s }],
+                reference_force_n: &[1000.0],
+                pose: None,
+                outside_wrench: None,
+            });
+        }
+        let record = measurements.cable(0).unwrap();
+        let spikes: Vec<usize> = faulty_stretches(&record).iter().map(|stretch| stretch.cycles.start).collect();
+        assert_eq!(spikes, [100, 500]);
     }
 
     #[test]

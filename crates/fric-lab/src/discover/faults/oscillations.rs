@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::RecordingFault;
 use super::lines::{Line, lines};
+use super::passes::Passes;
 use super::spectrum::{Times, Together};
 use super::vibration::{Vibration, Way, steady, vibration};
 use crate::fit::{CableRecord, Row};
@@ -20,13 +21,13 @@ pub struct Oscillations {
 
 impl Oscillations {
     /// The lines of a residual, N, NaN where there is no sample.
-    pub fn lines_of(residual_n: &[f64], times: &Times, signals: &[Together<'_>]) -> Self {
-        Self { lines: lines(residual_n, times, signals), vibration: None }
+    pub fn lines_of(residual_n: &[f64], times: &Times, record: &CableRecord<'_>, signals: &[Together<'_>]) -> Self {
+        Self { lines: lines(residual_n, times, signals, &Passes::of(record)), vibration: None }
     }
 
     /// The lines and the vibration of a residual, N, NaN where there is no sample. Where there is a vibration, lines within its peak are parts of it.
     pub fn of(residual_n: &[f64], times: &Times, record: &CableRecord<'_>, signals: &[Together<'_>]) -> Self {
-        let all = Self::lines_of(residual_n, times, signals);
+        let all = Self::lines_of(residual_n, times, record, signals);
         let humming = steady(&all.lines, residual_n, times);
         let mut rest = residual_n.to_vec();
         for line in &humming {
@@ -42,7 +43,8 @@ impl Oscillations {
         };
         let shown_n = found.in_signal(&rest, times);
         let without: Vec<f64> = residual_n.iter().zip(&shown_n).map(|(residual, shown)| residual - shown).collect();
-        Self { lines: lines(&without, times, signals), vibration: Some((found, shown_n)) }
+        let vibration = Some((found, shown_n));
+        Self { vibration, ..Self::lines_of(&without, times, record, signals) }
     }
 
     /// Whether there is a vibration among them.

@@ -11,6 +11,9 @@ use crate::discover::workbench::Trial;
 
 /// Maximum number of effects per cable.
 pub(super) const MOST_EFFECTS: usize = 8;
+/// Number of candidates that are still judged by themselves once the work of a search is spent and nothing has a name. On a log with a wrong zero beside a
+/// piece of cable that rubs, one suffices.
+pub(super) const LAST_TURNS: usize = 4;
 
 /// A candidate with evidence in its favour.
 struct Entrant {
@@ -23,7 +26,14 @@ struct Entrant {
 impl Search<'_, '_> {
     /// Adds candidates as long as they help, except those that were refused: the best one with strong evidence.
     pub(super) fn enter(&mut self, found: &mut Vec<Effect>) {
-        while found.len() < MOST_EFFECTS && !self.is_spent(found) {
+        while found.len() < MOST_EFFECTS {
+            if self.is_spent(found) {
+                // The candidates by themselves have been fitted. The best of them get their turn though the search has spent its work on others.
+                if !found.is_empty() || self.last_turns == 0 {
+                    break;
+                }
+                self.last_turns -= 1;
+            }
             let model = self.fit(found);
             if self.excess(&model) <= NEGLIGIBLE {
                 break;

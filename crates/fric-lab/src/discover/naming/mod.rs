@@ -28,6 +28,7 @@ use fric_core::effects::Effect;
 use fric_core::effects::empirical::SHARES;
 use fric_core::parameters::{OFFSET, Values};
 
+use self::entry::LAST_TURNS;
 use self::evidence::{delta_bic, inflation};
 use self::fits::gains;
 use self::justification::is_at_end;
@@ -170,6 +171,8 @@ pub struct Search<'b, 'a> {
     around: Around,
     conditions: &'b [Condition<'a>],
     effort: &'b Effort,
+    /// Number of candidates that may still be judged once the work is spent.
+    last_turns: usize,
     /// Number of effects that the model has from the start.
     given_count: usize,
     fits: BTreeMap<Set, Trial>,
@@ -207,6 +210,7 @@ impl<'b, 'a> Search<'b, 'a> {
             around,
             conditions,
             effort,
+            last_turns: LAST_TURNS,
             given_count: Effect::CATALOGUE.iter().filter(|effect| has(**effect, &base.values)).count(),
             fits,
             earlier: BTreeMap::new(),

@@ -34,9 +34,9 @@ impl FaultResult {
                 newtons(value("rms_n"))
             ),
             Fault::NoisyLength => format!(
-                "the length trembles by {} m (standard deviation), which the model takes for motion; `length_noise_m` = {} m of the monitor keeps \
-                 it out, which an extended file sets; look at the encoder's resolution, supply and shielding",
-                significant(value("noise_m")),
+                "the length trembles by {} (standard deviation), which the model takes for motion; `length_noise_m` = {} m of the monitor keeps \
+                 it out, which the written file sets; look at the encoder's resolution, supply and shielding",
+                quantity(value("noise_m"), None, "m"),
                 significant(value("length_noise_m"))
             ),
             Fault::Frozen => format!("the force sensor stands still {}", left_out()),

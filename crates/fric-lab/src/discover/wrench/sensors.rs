@@ -13,6 +13,7 @@ use core::f64::consts::PI;
 use nalgebra::Vector6;
 
 use crate::discover::faults::lines::{Line, lines};
+use crate::discover::faults::passes::Passes;
 use crate::discover::faults::spectrum::{Times, motion_and_load};
 use crate::discover::faults::{Fault, FaultyStretch, RecordingFault, faulty_stretches, leave_out, of_stretches};
 use crate::fit::balance::by_moment_arm;
@@ -105,7 +106,7 @@ fn hum_of(cable: usize, record: &CableRecord<'_>, is_faulty: &[bool]) -> Vec<Hum
     // The last signal is the load as the sensor shows it, which is what is searched.
     signals.truncate(signals.len().saturating_sub(1));
     let quick = (0..PASSES).fold(sensed, |signal, _| less_mean(record, &signal, half));
-    let found = lines(&quick, &times, &signals).into_iter().map(|line| {
+    let found = lines(&quick, &times, &signals, &Passes::of(record)).into_iter().map(|line| {
         #[expect(clippy::cast_precision_loss, reason = "a few samples")]
         let count = (2 * half + 1) as f64;
         let half_angle = PI * line.frequency_hz * record.interval_s;

@@ -73,7 +73,7 @@ impl Studio<'_> {
         let bad = |problem: String| ExcitationError::BadQuestion { problem };
         let record = self.standard.cable(question.cable).ok_or_else(|| bad(format!("there is no cable {name}")))?;
         let model = question.values.unwrap_or_else(|| record.params.values());
-        let unlikely = || bad(format!("the model of {name} gives no forces on a run; check its parameters"));
+        let unlikely = || self.no_forces(&format!("the model of {name} gives no forces on a run"));
         match &question.aim {
             Aim::Determine(wanted) => {
                 if let Some(absent) = wanted.iter().find(|of| of.effect().is_some_and(|effect| !has(effect, &model))) {

@@ -11,6 +11,7 @@ use super::models::QuestionModels;
 use super::{Experiment, Forecast, Goal, KnownParameter, Question, choose, pieces, predicted};
 use crate::candidates::ripple::least_range_m;
 use crate::discover::naming::STRONG_BIC;
+use crate::excite::loads::Loads;
 use crate::excite::{Excitation, ExcitationError, ExcitationOptions};
 use crate::fit::{Measurements, Progress, Reference};
 use crate::samples::record::Row;
@@ -37,6 +38,7 @@ pub(super) struct Studio<'a> {
     /// Duration of each piece, including a change of the load before it, s.
     times_s: Vec<f64>,
     lead_in_s: f64,
+    loads: Loads,
     library: Measurements<'a>,
     pub(super) standard: Measurements<'a>,
 }
@@ -56,7 +58,8 @@ impl<'a> Studio<'a> {
             }
         }
         let empty = Excitation::of_pieces(robot, options, &[], 0.0)?;
-        let (work_box, limits) = (empty.work_box.unwrap_or(Motion::BENCH), options.limits());
+        let known = robot.params().known_reference().filter(|_| empty.work_box.is_none());
+        let (work_box, limits) = (empty.work_box.unwrap_or(Motion::BENCH), options.limits(known.as_ref()));
         // The box is determined once.
         let corners_m = |of: WorkBox| [of.center_m - of.half_edges_m, of.center_m + of.half_edges_m].map(Into::into);
         let options = ExcitationOptions { box_m: empty.work_box.map(corners_m), ..*options };
@@ -100,6 +103,7 @@ impl<'a> Studio<'a> {
             pieces,
             times_s,
             lead_in_s: lead_in_s + change_s,
+            loads: empty.loads,
             library,
             standard,
         })
@@ -181,8 +185,21 @@ impl<'a> Studio<'a> {
         if self.is_stopped() {
             return ExcitationError::Stopped;
         }
-        let problem = "a model gives no finite forces on some movement; check the parameters in the robot file";
-        ExcitationError::BadQuestion { problem: problem.to_owned() }
+        self.no_forces("a model gives no finite forces on some movement")
+    }
+
+    /// Returns the error of a model without forces. Under the small load that a test bench has if nobody states one, its friction may exceed the load.
+    pub(super) fn no_forces(&self, what: &str) -> ExcitationError {
+        let problem = if self.loads.is_assumed() {
+            format!(
+                "{what} under {:.1} N, as nothing states the load of the cables; state it by --min-tension-n and --max-tension-n, or by \
+                 `reference` under [log] in the robot file",
+                self.loads.usual_n()
+            )
+        } else {
+            format!("{what}; check the parameters in the robot file")
+        };
+        ExcitationError::BadQuestion { problem }
     }
 
     /// Returns the run with the greatest value, given the present knowledge of the models.

@@ -144,7 +144,10 @@ impl Simulation {
                 workspace.as_ref().map(|workspace| workspace.crossing(&platform, &level))
             }
         };
-        let motion = stated.map_or_else(|| Motion::new(run, &Limits::NONE), |stated| stated.motion().clone());
+        let motion = stated.map_or_else(
+            || Motion::new(run, &Limits::of_load(params.known_reference().as_ref())),
+            |stated| stated.motion().clone(),
+        );
         let held = workspace.filter(|_| platform.cable_count() == tables.len());
         let tension = match held {
             Some(Workspace { balanced, .. }) => Tension::Platform {

@@ -225,6 +225,7 @@ mod tests {
 
     use super::*;
     use crate::discover::faults::lines::lines;
+    use crate::discover::faults::passes::Passes;
 
     const INTERVAL_S: f64 = 1e-3;
     const COUNT: usize = 40_000;
@@ -298,7 +299,7 @@ mod tests {
         let slow = |row: usize| 5.0 * (TAU * 0.31 * at_s(row)).sin() + 4.0 * (TAU * 0.83 * at_s(row)).sin();
         let residual: Vec<f64> = noise(41).iter().enumerate().map(|(row, noise)| noise + slow(row)).collect();
         assert_eq!(vibration(&residual, &of_log, &[], &[]), None);
-        assert_eq!(lines(&residual, &of_log, &[]), []);
+        assert_eq!(lines(&residual, &of_log, &[], &Passes::none()), []);
 
         // In turns a row of this loop, as the oscillator is that of a loop of 1 ms.
         let shown = [ringing(34.0, 0.02, 0.7), ringing(34.0, 0.02, 0.7), ringing(34.0, 0.02, 0.7)].concat();
@@ -309,7 +310,7 @@ mod tests {
         assert!((found.frequency_hz / 17.0 - 1.0).abs() < 0.01, "{found:?}");
         let hums: Vec<f64> =
             residual.iter().enumerate().map(|(row, of)| of + 0.8 * (TAU * 50.02 * at_s(row)).sin()).collect();
-        let found = lines(&hums, &of_log, &[]);
+        let found = lines(&hums, &of_log, &[], &Passes::none());
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].frequency_hz - 50.02).abs() < 1e-3 && (found[0].amplitude() - 0.8).abs() < 0.03, "{found:?}");
     }
@@ -331,7 +332,7 @@ mod tests {
                 hum.push(number + (TAU * 50.02 * time_s).sin());
             }
             for signal in [&white, &wander, &lag, &hum] {
-                let of_hum = lines(signal, &times(), &[]);
+                let of_hum = lines(signal, &times(), &[], &Passes::none());
                 let mut rest = signal.clone();
                 for line in steady(&of_hum, signal, &times()) {
                     line.add_to(rest.iter_mut(), -1.0, &times());

@@ -50,6 +50,8 @@ pub struct Law<'a> {
     pub nearly_ratio: f64,
     /// Effects that the law may stand in for; all if there are none.
     pub looks_like: &'static [Effect],
+    /// The effect that the law is where its levels are equal, if it has levels.
+    pub level_of: Option<Effect>,
     /// Each gives a signal of the law from the first cycle on, of any unit. Series of all laws would take up more memory than the log.
     pub columns: Vec<Box<dyn Fn() -> Numbers<'a> + 'a>>,
 }
@@ -66,7 +68,15 @@ impl<'a> Law<'a> {
             let number = Rc::clone(&number);
             Box::new((0..cycle_count).map(move |cycle| number(cycle)))
         };
-        Self { signal, of, least_of_excess: 0.0, nearly_ratio: 0.0, looks_like: &[], columns: vec![Box::new(numbers)] }
+        Self {
+            signal,
+            of,
+            least_of_excess: 0.0,
+            nearly_ratio: 0.0,
+            looks_like: &[],
+            level_of: None,
+            columns: vec![Box::new(numbers)],
+        }
     }
 }
 
@@ -116,6 +126,7 @@ pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: &Values) -> Vec<Law<'
         least_of_excess: 0.0,
         nearly_ratio: NEARLY,
         looks_like: &[],
+        level_of: None,
         columns: vec![Box::new(move || Box::new(crept(&record, lag_s)))],
     };
     laws.extend(CREEP_S.map(creep));
@@ -126,6 +137,7 @@ pub fn laws<'b>(bench: &'b Workbench<'b>, friction_values: &Values) -> Vec<Law<'
         least_of_excess: 0.0,
         nearly_ratio: NEARLY,
         looks_like: &OF_YIELDING,
+        level_of: None,
         columns: vec![Box::new(move || {
             let friction = Rc::clone(&friction);
             Box::new(loaded(&record, &friction_values, move |cycle| friction.added_n(cycle)))

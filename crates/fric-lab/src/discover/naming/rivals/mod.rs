@@ -26,6 +26,9 @@ use crate::search::problem::Problem;
 const MOST_BENT: f64 = 0.25;
 /// and the effect beside the law explains less than this fraction of what it explains alone.
 const LEAST_BESIDE_RATIO: f64 = 0.5;
+/// A law with levels takes the place of the effect that one level is, if the jumps between them explain this fraction of what one level does: a zero
+/// that is off for more than a tenth and less than nine tenths of a log. A wrong zero that also jumps a little is a wrong zero.
+const LEAST_OF_JUMPS: f64 = 0.1;
 
 /// A law that makes some of the effects superfluous.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +82,8 @@ pub fn best_rival(
     laws.retain(|law| law.of.is_none_or(|of| !kinds.contains(&of)));
     // Whatever has a name may be a jump or two, of the sensor's zero or of the friction, or the damping of the contacts.
     for ((_, neutral), without) in effects.iter().zip(&without) {
-        laws.extend(jumps(without.residuals_n(), |_| 1.0));
+        let of_zero = jumps(without.residuals_n(), |_| 1.0);
+        laws.extend(of_zero.map(|law| Law { level_of: Some(Effect::SensorOffset), ..law }));
         laws.extend(jumps(without.residuals_n(), |cycle| without.added_n(cycle)));
         laws.extend(contact_damping(bench, neutral, without));
     }
@@ -107,7 +111,7 @@ pub fn best_rival(
     let gain = |places: &[usize]| columns.gain(places);
     let all: Vec<usize> = (0..effects.len()).collect();
     let by_name = gain(&all);
-    let of_law = |Listed { signal, nearly_ratio, looks_like, columns: law, least }: &Listed| {
+    let of_law = |Listed { signal, nearly_ratio, looks_like, level_of, columns: law, least }: &Listed| {
         let is_alike = |name: usize| looks_like.is_empty() || looks_like.contains(&kinds[name]);
         let together = gain(&[&all[..], law].concat());
         let others = |name: usize| -> Vec<usize> { all.iter().copied().filter(|other| *other != name).collect() };
@@ -128,6 +132,12 @@ pub fn best_rival(
                 places.iter().copied().filter(may_go).map(without).min_by(|one, other| one.0.total_cmp(&other.0));
             let Some((_, place)) = weakest.filter(|(loss, _)| *loss < enough) else { break };
             places.retain(|other| *other != place);
+        }
+        let is_level = |name: usize| {
+            *level_of == Some(kinds[name]) && together - by_name < LEAST_OF_JUMPS * (by_name - gain(&others(name)))
+        };
+        if all.iter().any(|name| !places.contains(name) && is_level(*name)) {
+            return None;
         }
         let replaces: Vec<usize> = all.iter().copied().filter(|place| !places.contains(place)).collect();
         let gain_left = gain(&places);
@@ -172,7 +182,8 @@ fn listed(laws: &[Law<'_>], first: usize, excess: f64) -> Vec<Listed> {
         let columns: Vec<usize> = (end..end + law.columns.len()).collect();
         end += columns.len();
         let least = law.least_of_excess * excess.max(0.0);
-        Listed { signal: law.signal, nearly_ratio: law.nearly_ratio, looks_like: law.looks_like, columns, least }
+        let Law { signal, nearly_ratio, looks_like, level_of, .. } = *law;
+        Listed { signal, nearly_ratio, looks_like, level_of, columns, least }
     };
     laws.iter().map(place).collect()
 }
@@ -182,6 +193,7 @@ struct Listed {
     signal: &'static str,
     nearly_ratio: f64,
     looks_like: &'static [Effect],
+    level_of: Option<Effect>,
     columns: Vec<usize>,
     /// Decrease of the sum of squares that is not enough for it, N².
     least: f64,
