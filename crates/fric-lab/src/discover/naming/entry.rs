@@ -11,8 +11,7 @@ use crate::discover::workbench::Trial;
 
 /// Maximum number of effects per cable.
 pub(super) const MOST_EFFECTS: usize = 8;
-/// Number of candidates that are still judged by themselves once the work of a search is spent and nothing has a name. On a log with a wrong zero beside a
-/// piece of cable that rubs, one suffices.
+/// Number of candidates that still get a turn once the work of a search is spent. On a log with a wrong zero beside a piece of cable that rubs, one suffices.
 pub(super) const LAST_TURNS: usize = 4;
 
 /// A candidate with evidence in its favour.
@@ -28,11 +27,10 @@ impl Search<'_, '_> {
     pub(super) fn enter(&mut self, found: &mut Vec<Effect>) {
         while found.len() < MOST_EFFECTS {
             if self.is_spent(found) {
-                // The candidates by themselves have been fitted. The best of them get their turn though the search has spent its work on others.
-                if !found.is_empty() || self.last_turns == 0 {
-                    break;
-                }
-                self.last_turns -= 1;
+                // The candidates beside what is found have been fitted, or will be for those that are told as tried. The best of them get their turn though the
+                // search has spent its work on others.
+                let Some(left) = self.last_turns.checked_sub(1) else { break };
+                self.last_turns = left;
             }
             let model = self.fit(found);
             if self.excess(&model) <= NEGLIGIBLE {
