@@ -183,7 +183,7 @@ fn what_is_missing_in_a_table_is_told_in_a_sentence() {
     place.run_in_vain(&["fit", "run.csv", "--model", "robot.toml", "-o", "f.toml"]).fails(1, &["no column `time_s`"]);
     place.run_in_vain(&["discover", "run.csv", "--model", "robot.toml"]).fails(1, &["no column `time_s`"]);
     for command in ["replay", "discover"] {
-        place.run_in_vain(&[command, "run.csv"]).fails(1, &["no robot file"]).advises(&["--model"]);
+        place.run_in_vain(&[command, "run.csv"]).fails(1, &["no robot file"]).advises(&["fric-cli init", "--model"]);
     }
     let info = place.run(&["info", "run.csv"]).succeeds().stdout;
     assert!(info.contains("F1") && info.contains("--model") && info.contains("init"), "{info}");
