@@ -42,6 +42,7 @@ pub mod robot;
 pub mod schema;
 pub mod signals;
 pub mod table;
+pub mod units;
 mod warnings;
 pub mod write;
 
