@@ -343,6 +343,7 @@ impl CsvLog {
                     Some(stamp_nanos) => {
                         self.row.stamp_nanos = stamp_nanos;
                         cells.fill(columns, &mut self.row, &mut self.units)?;
+                        self.units.compare(stamp_nanos, &self.row, columns.force_n.len());
                         // A date needs no unit.
                         if !cells.text(&columns.time).contains(&b':') {
                             self.units.add_stamp(stamp_nanos, columns.time.has_plain_values());
@@ -468,14 +469,16 @@ impl<'a> Cells<'a> {
             let values = &mut row.values[role as usize];
             values.clear();
             for (quantity, columns) in groups {
-                for column in *columns {
+                for (cable, column) in columns.iter().enumerate() {
                     let Some(column) = column else {
                         values.push(f64::NAN);
                         continue;
                     };
                     let value = column.value(self.number(column)?);
                     if let Some(quantity) = quantity {
-                        units.add(place, *quantity, &column.table.column, value);
+                        // The offset says nothing about the unit of the column.
+                        let without_offset = value - column.table.offset;
+                        units.add(place, (role, *quantity, cable), &column.table.column, without_offset);
                         place += 1;
                     }
                     values.push(value);

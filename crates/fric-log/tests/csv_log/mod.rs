@@ -283,6 +283,45 @@ fn values_that_look_like_another_unit_are_warned_of() {
     assert!(read(three).warnings.is_empty(), "a slack cable");
 }
 
+/// A winch of a kite pays out 300 m, and the forces of a mast are those of a lorry.
+#[test]
+fn great_values_that_another_measure_confirms_are_no_other_unit() {
+    let text = |force: f64, reference: f64, size: f64, speed: f64| {
+        let row = |row: i32| {
+            let angle = 0.005 * f64::from(row);
+            let (length_m, speed_m_per_s) = (size * (1.0 + 0.5 * angle.sin()), speed * size * 0.025 * angle.cos());
+            let ripple = 1.0 + 0.2 * angle.sin();
+            format!(
+                "{:.1},{},{length_m},{speed_m_per_s},{}\n",
+                0.1 * f64::from(row),
+                force * ripple,
+                reference * ripple
+            )
+        };
+        let rows: String = (0..300).map(row).collect();
+        format!("time_s,a.force_n,a.length_m,a.speed_m_per_s,a.reference_n\n{rows}")
+    };
+    let units = |text: &str, columns: &[(&str, ColumnTable)]| -> Vec<String> {
+        let mut warnings = read_files(&[("run.csv", text.as_bytes())], columns).warnings;
+        warnings.retain(|warning| warning.contains("looks like"));
+        warnings
+    };
+    assert_eq!(units(&text(30_000.0, 29_000.0, 250.0, 1.0), &[]), [""; 0]);
+    // A speed that contradicts, or that no winch has, confirms nothing; nor does a force of another size.
+    for (text, words) in [
+        (text(20.0, 20.0, 250.0, 1e-3), "lengths are up to"),
+        (text(20.0, 20.0, 2500.0, 1.0), "lengths are up to"),
+        (text(30_000.0, 30.0, 1.0, 1.0), "in `a.force_n` forces are on average"),
+        (text(0.05, 0.05, 1.0, 1.0), "forces are at most"),
+    ] {
+        assert!(units(&text, &[]).iter().any(|warning| warning.contains(words)), "{words}: {:?}", units(&text, &[]));
+    }
+    // An offset says nothing about the unit.
+    let force = |key, name| (key, column(name, 1.0, 30_000.0));
+    let columns = [force("a.force_n", "a.force_n")];
+    assert_eq!(units(&text(300.0, 300.0, 1.0, 1.0), &columns), [""; 0]);
+}
+
 #[test]
 fn lines_without_end_are_refused() {
     let names: String = (0..60_000).map(|column| format!(",c{column}")).collect();
