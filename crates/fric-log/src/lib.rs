@@ -48,3 +48,4 @@ pub mod write;
 
 pub use csv_log::{CsvError, GREAT_INTERVAL_S};
 pub use error::{in_full, reason, with_sources};
+pub use warnings::cycle_warning;
