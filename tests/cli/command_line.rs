@@ -3,6 +3,17 @@
 use super::support::Place;
 
 #[test]
+fn the_discovery_of_a_manipulator_is_found_where_one_looks_for_it() {
+    let place = Place::empty();
+    let run = place.run(&["continuum", "discover", "pull.csv"]);
+    assert!(
+        run.code == Some(2) && run.stderr.contains("tip: ") && run.stderr.contains("fric-cli discover RUN --model"),
+        "{run:#?}"
+    );
+    assert!(!place.run(&["continuum", "discovr"]).stderr.contains("fric-cli discover RUN"));
+}
+
+#[test]
 fn what_is_no_command_line_is_told() {
     let place = Place::with_log();
     place.run_in_vain(&["replai", "log.mcap"]).fails(2, &["replai"]);

@@ -183,12 +183,16 @@ fn what_is_missing_in_a_table_is_told_in_a_sentence() {
     place.run_in_vain(&["fit", "run.csv", "--model", "robot.toml", "-o", "f.toml"]).fails(1, &["no column `time_s`"]);
     place.run_in_vain(&["discover", "run.csv", "--model", "robot.toml"]).fails(1, &["no column `time_s`"]);
     for command in ["replay", "discover"] {
-        place.run_in_vain(&[command, "run.csv"]).fails(1, &["no robot file"]).advises(&["--model"]);
+        place.run_in_vain(&[command, "run.csv"]).fails(1, &["no robot file"]).advises(&["fric-cli init", "--model"]);
     }
     let info = place.run(&["info", "run.csv"]).succeeds().stdout;
     assert!(info.contains("F1") && info.contains("--model") && info.contains("init"), "{info}");
     let info = place.run(&["info", "run.csv", "--model", "robot.toml"]).succeeds().stdout;
-    assert!(unwrapped(&info).contains("has no column `time_s`") && info.contains("impossible"), "{info}");
+    assert_eq!(unwrapped(&info).matches("has no column `time_s`").count(), 1, "{info}");
+    assert!(info.contains("impossible"), "{info}");
+    place.write("run.csv", "t;F1;L1;\n0;1;2;\n1;1;2;\n");
+    let info = place.run(&["info", "run.csv"]).succeeds().stdout;
+    assert!(!info.lines().any(|line| line.trim() == "–"), "{info}");
     place.write("run.csv", "time_s,cable1.force_n,cable1.length_m\n0,1,2\n0.001,x,2\n");
     place
         .run_in_vain(&["replay", "run.csv", "--model", "robot.toml"])
@@ -272,6 +276,34 @@ fn a_cable_that_rests_or_has_no_force_is_told() {
     assert!(unwrapped(&info.stdout).contains(&format!("fit: forces impossible {never}")), "{info:#?}");
     let run = place.run(&["replay", "silent.csv", "--model", "bench.toml"]);
     assert!(run.stdout.starts_with("Nothing is compensated: the log has no force of any sensor."), "{run:#?}");
+}
+
+/// A load that changes faster than the model's stiffness allows, and a cable that runs faster than 10 m/s.
+#[test]
+fn jumps_are_told_with_the_limit_and_what_the_log_shows() {
+    let place = Place::empty();
+    let bench = "format = 'fric-robot/1'\nname = 'bench'\ncycle_s = 0.01\n[[cable]]\nname = 'winch'\npulleys = [{ wrap_deg = 90.0 }]\n\
+                 friction = { mu = 0.02, sigma_n_per_m = 1000.0 }\n";
+    place.write("bench.toml", bench);
+    let row = |row: u32| {
+        let length_m = f64::from(row.min(200)) * 0.02 + f64::from(row.max(200) - 200) * 0.2;
+        format!("{:.2},{},{length_m:.2},20\n", f64::from(row) * 0.01, [100, 140][row as usize / 5 % 2])
+    };
+    let rows: String = (0..400).map(row).collect();
+    place.write("run.csv", format!("time_s,winch.force_n,winch.length_m,winch.reference_n\n{rows}"));
+    let run = place.run(&["replay", "run.csv", "--model", "bench.toml"]);
+    let told = unwrapped(&run.stderr);
+    for words in [
+        "winch: SENSOR_JUMP is raised for up to 5 s where",
+        "`sensor_jump_n` in a cycle, here 5 N (from σ and `length_jump_m`); in the log 79 of 399 changes are greater, up to 40 N.",
+        "state a larger `sensor_jump_n` under `[monitor]`",
+        "`length_jump_m` in a cycle, here 0.1 m (10 m/s); in the log 199 of 399 changes are greater, up to 0.2 m.",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    place.write("wide.toml", format!("{bench}[monitor]\nsensor_jump_n = 50.0\nlength_jump_m = 0.3\n"));
+    let run = place.run(&["replay", "run.csv", "--model", "wide.toml"]);
+    assert!(!run.stderr.contains("_JUMP"), "{run:#?}");
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn command_lines_that_are_wrong_are_told() {
         ("my", &["unknown parameter `my`", "did you mean `mu`"][..]),
         ("mu,sigma_n_per_mm", &["`sigma_n_per_mm`", "did you mean `sigma_n_per_m`"]),
         ("stribek.ratio", &["`stribek.ratio`", "did you mean `stribeck.ratio`"]),
-        ("friction", &["`friction`", "`mu`, `sigma_n_per_m`, `viscous_n_s_per_m`, `offset_n`", "`time_delay.delay_s`"]),
+        ("mu,sigma,viscous", &["`sigma`", "did you mean `sigma_n_per_m`? (known here: `sigma_n_per_m`, ", " more)"]),
         ("", &["--parameters", "unknown parameter ``"]),
         ("mu,offset_n,mu", &["`mu` is named twice"]),
     ] {

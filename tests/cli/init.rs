@@ -101,6 +101,107 @@ fn units_that_nothing_applies_are_told() {
     place.run(&["convert", "run.csv", "--model", "factor.toml", "-o", "b.mcap"]).succeeds();
 }
 
+/// A robot file of one cable, with these lines under `[log.columns]`.
+fn one_cable(columns: &str) -> String {
+    format!(
+        "format = \"fric-robot/1\"\nname = \"b\"\ncycle_s = 0.01\n[log.columns]\n{columns}[[cable]]\nname = \"cable1\"\n\
+         pulleys = [{{ wrap_deg = 90.0 }}]\nfriction = {{ mu = 0.02, sigma_n_per_m = 1000.0, viscous_n_s_per_m = 0.0 }}\n"
+    )
+}
+
+/// A remark with as many cells as the table, and a second force whose place nobody can know.
+#[test]
+fn a_remark_is_no_header_and_a_second_force_is_offered_as_reference() {
+    let place = Place::empty();
+    let rows: String =
+        (0..200).map(|at| format!("{},00;1,4{};{};1,5{}\n", 5 * at, at % 9, 3000 - at, at % 7)).collect();
+    let header = "Prüfstand 3;Seil A;Datum;12.03.2026\nZeit [ms];Kraft Winde [kN];Seillänge [mm];Kraft Haken [kN]\n";
+    place.write("run.csv", format!("{header}{rows}"));
+    let text = drafted(&place, "run.csv");
+    for part in [
+        "cycle_s = 0.005 ",
+        "\"time_s\" = { column = \"Zeit [ms]\", factor = 0.001 }",
+        "\"cable1.force_n\" = { column = \"Kraft Winde [kN]\", factor = 1000.0 }",
+        "# ? \"cable1.reference_n\" = { column = \"Kraft Haken [kN]\", factor = 1000.0 } # if this is the force at the platform",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    // The comment taken away, it is the reference.
+    place.write("own.toml", text.replace("# ? \"cable1.reference_n\"", "\"cable1.reference_n\""));
+    place.run(&["info", "run.csv", "--model", "own.toml"]).succeeds();
+    assert!(place.run(&["replay", "run.csv", "--model", "own.toml"]).stdout.contains("against the reference"));
+    // Without a second force a known load is the other way.
+    place.write("run.csv", "time_s,F [N],l [m]\n0,1,2\n0.01,1,2.1\n0.02,1,2.2\n");
+    place.run(&["init", "run.csv", "-o", "draft.toml", "--force"]).succeeds();
+    let text = String::from_utf8(place.read("draft.toml")).unwrap();
+    assert!(text.contains("{ constant_n = 49.05 } or reference = { hanging_mass_kg = 5.0 }"), "{text}");
+}
+
+/// A date takes no factor, whatever unit stands beside its name.
+#[test]
+fn dates_get_no_factor() {
+    let place = Place::empty();
+    let row = |at: i32| format!("03.05.2026 12:00:{:02},{:03};{};{}\n", at / 100, at % 100 * 10, 20 + at % 3, at);
+    place.write("run.csv", format!("Zeit [ms];F [N];l [mm]\n{}", (0..300).map(row).collect::<String>()));
+    let text = drafted(&place, "run.csv");
+    assert!(text.contains("\"time_s\" = { column = \"Zeit [ms]\" }") && text.contains("cycle_s = 0.01 "), "{text}");
+    place.run(&["convert", "run.csv", "--model", "draft.toml", "-o", "run.mcap"]).succeeds();
+    place.write("own.toml", text.replace("\"Zeit [ms]\" }", "\"Zeit [ms]\", factor = 0.001 }"));
+    place
+        .run(&["convert", "run.csv", "--model", "own.toml", "-o", "own.mcap"])
+        .fails(1, &["column `Zeit [ms]`: `03.05.2026 12:00:00,000` is a date or a time of day"])
+        .advises(&["takes no factor", "remove", "`time_s`", "[log.columns]"]);
+}
+
+/// As many a script writes it.
+#[test]
+fn a_table_with_blanks_between_cells_is_drafted_and_replayed() {
+    let place = Place::empty();
+    let rows: String = (0..200)
+        .map(|at| format!("{:.3}  1.9{}   0.{at:03}\t-0.{}\n", f64::from(at) * 0.01, at % 5, 3 + at % 4))
+        .collect();
+    place.write("run.csv", format!("time  load  position   torque\n{rows}"));
+    let text = drafted(&place, "run.csv");
+    for part in ["{ column = \"time\" }", "{ column = \"load\" }", "{ column = \"position\" }", "not used: torque"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    place.run(&["convert", "run.csv", "--model", "draft.toml", "-o", "run.mcap"]).succeeds();
+    let states = super::logs::on_topic(&place.read("run.mcap"), "/cable_states", super::cdr::joint_state);
+    assert_eq!((states.len(), states[7].position[0]), (200, 0.007));
+    place.write("rows.csv", rows);
+    place
+        .run_in_vain(&["init", "rows.csv", "-o", "other.toml"])
+        .fails(1, &["line 1: there are numbers where the names"]);
+    place.write("mixed.csv", "time load position\n0 1 2\n1 2 3 4 5\n");
+    place.run_in_vain(&["init", "mixed.csv", "-o", "other.toml"]).fails(1, &["one column alone, `time load position`"]);
+}
+
+/// A joint shows a torque, and a station of a kite its place, which never changes.
+#[test]
+fn what_is_no_length_is_not_taken_and_a_torque_is_offered() {
+    let place = Place::empty();
+    let rows: String =
+        (0..200).map(|at| format!("{:.2},52.17,7.5,{at},0.{}\n", f64::from(at) * 0.01, at % 9)).collect();
+    place.write("run.csv", format!("time,ground_pos_latitude,mast_pos,joint_pos,tau_measured\n{rows}"));
+    let text = drafted(&place, "run.csv");
+    for part in [
+        "\"cable1.length_m\" = { column = \"joint_pos\" }",
+        "# ? cable1.length_m: column \"mast_pos\" never changes",
+        "# ? \"cable1.force_n\" = { column = \"tau_measured\" } # with a `factor` to newtons",
+        "not used: ground_pos_latitude, tau_measured",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    place.write(
+        "plain.toml",
+        one_cable("time_s = { column = \"time\" }\n\"cable1.force_n\" = { column = \"tau_measuret\" }\n"),
+    );
+    place
+        .run_in_vain(&["info", "run.csv", "--model", "plain.toml"])
+        .fails(1, &["has no column `tau_measuret`, which the robot file names for `cable1.force_n`", "`tau_measured`?"])
+        .advises(&["as it stands in the header"]);
+}
+
 #[test]
 fn the_rate_is_found_though_a_column_is_not() {
     let place = Place::empty();

@@ -59,7 +59,7 @@ fn a_log_without_a_robot_needs_one() {
     place
         .run_in_vain(&["replay", "bare.mcap", "-o", "out.mcap"])
         .fails(1, &["no robot file attached", "fric-robot.toml"])
-        .advises(&["--model", "examples/mini-ipanema.toml"]);
+        .advises(&["--model", "fric-cli init LOG -o robot.toml"]);
     let info = place.run_in_vain(&["info", "bare.mcap"]).succeeds();
     assert!(info.stdout.contains("/cable_states") && info.stdout.contains("--model"), "{info:#?}");
     // With the file named, it is the log it was.

@@ -105,6 +105,19 @@ def test_dates_of_numpy_are_stamps():
         fric.Log.from_arrays(stamp_nanos=stamp_nanos.astype("timedelta64[ns]"), **arrays)
 
 
+@pytest.mark.parametrize("milliseconds", [1, 1000])
+def test_stamps_in_another_unit_are_told(milliseconds):
+    robot = fric.Robot.from_toml(BENCH)
+    log = fric.simulate(robot, duration_s=20.0)
+    names = ("cable_names", "sensor_force_n", "length_m", "speed_m_per_s", "reference_force_n")
+    arrays = {name: getattr(log, name) for name in names}
+    fric.replay(robot, fric.Log.from_arrays(stamp_nanos=log.stamp_nanos, **arrays))
+    odd = fric.Log.from_arrays(stamp_nanos=np.arange(len(log)) * milliseconds, **arrays)
+    for call in (fric.replay, fric.fit):
+        with pytest.warns(fric.LogWarning, match="signal comes every .*, but `cycle_s` .* another unit than seconds"):
+            call(robot, odd)
+
+
 def test_a_number_that_overflows_errors_is_told():
     robot = fric.Robot.from_toml(BENCH)
     log = fric.simulate(robot, duration_s=2.0)

@@ -19,6 +19,7 @@ use std::ffi::OsString;
 use std::time::Instant;
 
 use clap::Parser;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use arguments::{Arguments, Command};
 
@@ -33,7 +34,15 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     command::remember(&words);
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
-        Err(error) => {
+        Err(mut error) => {
+            // The command of that name is for both kinds of robots, and `continuum` has none.
+            let is_discover =
+                error.get(ContextKind::InvalidSubcommand).is_some_and(|word| word.to_string() == "discover");
+            if error.kind() == ErrorKind::InvalidSubcommand && is_discover {
+                let tip =
+                    "a manipulator's run takes the same command as a robot's: fric-cli discover RUN --model M.toml";
+                error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.to_owned().into()]));
+            }
             // A broken stream cannot be reported anywhere.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(2);

@@ -83,5 +83,5 @@ impl Model {
 /// Returns the failure of a command that needs a robot and has none.
 pub fn missing() -> Failure {
     Failure::new(format!("the log has no robot file attached ({ROBOT_FILE}), and none is named"))
-        .advise("Name one with --model robot.toml; examples/mini-ipanema.toml shows the format.")
+        .advise("Make one to start from (fric-cli init LOG -o robot.toml), and name it with --model robot.toml.")
 }

@@ -42,8 +42,10 @@ pub mod robot;
 pub mod schema;
 pub mod signals;
 pub mod table;
+pub mod units;
 mod warnings;
 pub mod write;
 
 pub use csv_log::{CsvError, GREAT_INTERVAL_S};
 pub use error::{in_full, reason, with_sources};
+pub use warnings::cycle_warning;

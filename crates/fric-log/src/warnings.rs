@@ -108,23 +108,31 @@ impl SignalReader {
     /// Returns a warning if the rate of the cable signal differs from the robot file.
     #[must_use]
     pub fn cycle_warning(&self, robot: &RobotFile) -> Option<String> {
-        let interval_s = self.counts(Role::Cable).interval_nanos * 1e-9;
-        let cycle_s = robot.options().cycle_s;
-        let ratio = interval_s / cycle_s;
-        let is_near = |of: f64| (0.8..=1.25).contains(&(ratio / of));
-        let thousands = [1e3, 1e6, 1e9].into_iter().any(|times| is_near(times) || is_near(1.0 / times));
-        let consequence = if thousands {
-            "one of the two has another unit than seconds, and with wrong times speeds and viscous friction are wrong too"
-        } else {
-            "delays and the check for a frozen sensor count samples, as many as `cycle_s` makes of them; friction itself does not \
-             depend on the rate"
-        };
-        (interval_s > 0.0 && !is_near(1.0)).then(|| {
-            format!(
-                "the cable signal comes every {interval_s:.6} s, but `cycle_s` in the robot file is {cycle_s}; {consequence}"
-            )
-        })
+        cycle_warning(self.counts(Role::Cable).interval_nanos, robot)
     }
+}
+
+/// Returns a warning if the usual interval of the samples, ns, differs from the cycle of the robot file.
+#[must_use]
+pub fn cycle_warning(interval_nanos: f64, robot: &RobotFile) -> Option<String> {
+    let interval_s = interval_nanos * 1e-9;
+    let cycle_s = robot.options().cycle_s;
+    let ratio = interval_s / cycle_s;
+    let is_near = |of: f64| (0.8..=1.25).contains(&(ratio / of));
+    let thousands = [1e3, 1e6, 1e9].into_iter().any(|times| is_near(times) || is_near(1.0 / times));
+    let consequence = if thousands {
+        "one of the two has another unit than seconds, and with wrong times speeds and viscous friction are wrong too"
+    } else {
+        "delays and the check for a frozen sensor count samples, as many as `cycle_s` makes of them; friction itself does not \
+         depend on the rate"
+    };
+    // Six decimals of a time whose unit is wrong would be zeros.
+    let interval = if interval_s < 1e-5 { format!("{interval_s:.2e}") } else { format!("{interval_s:.6}") };
+    (interval_s > 0.0 && !is_near(1.0)).then(|| {
+        format!(
+            "the cable signal comes every {interval} s, but `cycle_s` in the robot file is {cycle_s}; {consequence}"
+        )
+    })
 }
 
 impl TrackCounts {

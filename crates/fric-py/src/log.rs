@@ -8,6 +8,7 @@ use std::sync::Arc;
 use fric_core::Pose;
 use fric_core::robot::unknown_name;
 use fric_lab::columns::{SampleColumns, SampleRows};
+use fric_log::cycle_warning;
 use fric_log::log::Log as LogSource;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
 use fric_log::signals::{LengthWindow, Role, SignalPaths, SignalReader, StatedSignals};
@@ -374,6 +375,24 @@ impl Log {
         self.robot.as_ref().filter(|own| is_other(own)).map(|_| warning.to_owned()).into_iter().collect()
     }
 
+    /// Returns a warning if the stamps of a log of arrays differ from a robot's cycle; that of a log that was read is given when it is read.
+    fn cycle_warning(&self, py: Python<'_>, robot: &Robot) -> Outcome<Option<String>> {
+        if self.robot.is_some() {
+            return Ok(None);
+        }
+        let mut intervals_nanos: Vec<i64> = self.with_rows(py, |rows| {
+            let stamps = rows.stamp_nanos;
+            Ok(stamps.iter().zip(stamps.iter().skip(1)).map(|(one, next)| next.saturating_sub(*one)).collect())
+        })?;
+        let middle = intervals_nanos.len() / 2;
+        if intervals_nanos.is_empty() {
+            return Ok(None);
+        }
+        #[expect(clippy::cast_precision_loss, reason = "an interval of samples")]
+        let usual_nanos = *intervals_nanos.select_nth_unstable(middle).1 as f64;
+        Ok(cycle_warning(usual_nanos, &robot.file))
+    }
+
     /// Checks that the columns are a robot's cables, and that there are rows.
     fn check_usable(&self, py: Python<'_>, names: &[&str]) -> Outcome {
         if self.cable_names == names {
@@ -427,6 +446,7 @@ pub fn of<'py>(
     let robot = robot.borrow();
     log.get().check_usable(py, &robot.file.cable_names())?;
     warn(py, &log.get().read_otherwise(py, &robot))?;
+    warn(py, log.get().cycle_warning(py, &robot)?.as_slice())?;
     log.get().with_stated(py, &robot, unread, watch)?.map_or(Ok(log), |log| Ok(Bound::new(py, log)?))
 }
 

@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness};
 use fric_lab::text::{table, table_with_text};
+use fric_log::CsvError;
 use fric_log::log::Log;
 use fric_log::output::OutputFile;
 use fric_log::signals::{Part, Role, SignalError, SignalReader};
@@ -213,6 +214,8 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
             Ok(None) => break None,
             // A read error of the disk says nothing about the log.
             Err(SignalError::Recording(error)) => return Err(error.into()),
+            // The robot file is wrong.
+            Err(error @ SignalError::Csv(CsvError::Misnamed { .. })) => return Err(error.into()),
             Err(error) => break Some(error.to_string()),
         }
     };
@@ -280,12 +283,12 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
         forces.push(no_pose());
     }
     let mut wrench = Vec::new();
-    if !all_geometry {
-        wrench.push("no geometry: `base_m` and `platform_m` are needed for every cable".to_owned());
-    }
     if !has_rows {
         wrench.push(nothing());
-    } else if holdings.posed == 0 {
+    } else if !all_geometry {
+        wrench.push("no geometry: `base_m` and `platform_m` are needed for every cable".to_owned());
+    }
+    if has_rows && holdings.posed == 0 {
         wrench.push("no pose: the directions of the cables are not known".to_owned());
     }
     let has_wrench = has_rows && wrench.is_empty();

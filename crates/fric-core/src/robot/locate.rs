@@ -186,17 +186,28 @@ fn keys_within(value: DeValue<'_>, offset: usize) -> Vec<String> {
     }
 }
 
-/// Returns "unknown key `x`; did you mean `y`?" with all known names; `what` says what the names denote.
+/// Number of names that a sentence lists, and number of the nearest ones that it lists of more.
+const MOST_LISTED: usize = 12;
+const NEAREST_LISTED: usize = 6;
+
+/// Returns "unknown key `x`; did you mean `y`?" with the known names, of many those that are nearest; `what` says what the names denote.
 #[must_use]
 pub fn unknown_name<'a>(what: &str, unknown: &str, known: impl Iterator<Item = &'a str>) -> String {
-    let known: Vec<&str> = known.collect();
+    let mut known: Vec<&str> = known.collect();
     if known.is_empty() {
         return format!("unknown {what} `{unknown}`: none belongs here");
     }
+    let nearest = nearest_name(unknown, known.iter().copied());
+    let count = known.len();
+    if count > MOST_LISTED {
+        known.sort_by(|one, other| likeness(unknown, other).total_cmp(&likeness(unknown, one)));
+        known.truncate(NEAREST_LISTED);
+    }
     let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    match nearest_name(unknown, known.iter().copied()) {
-        Some(name) => format!("unknown {what} `{unknown}`; did you mean `{name}`? (known here: {list})"),
-        None => format!("unknown {what} `{unknown}`; known here: {list}"),
+    let more = if count > known.len() { format!(" and {} more", count - known.len()) } else { String::new() };
+    match nearest {
+        Some(name) => format!("unknown {what} `{unknown}`; did you mean `{name}`? (known here: {list}{more})"),
+        None => format!("unknown {what} `{unknown}`; known here: {list}{more}"),
     }
 }
 
@@ -204,8 +215,37 @@ pub fn unknown_name<'a>(what: &str, unknown: &str, known: impl Iterator<Item = &
 #[must_use]
 pub fn nearest_name<'a>(unknown: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     known
-        .map(|name| (strsim::normalized_damerau_levenshtein(unknown, name), name))
+        .map(|name| (likeness(unknown, name), name))
         .filter(|(likeness, _)| *likeness > 0.4)
         .max_by(|(one, _), (other, _)| one.total_cmp(other))
         .map(|(_, name)| name)
+}
+
+/// Returns how like a name is to an unknown one, from 0 to 1 for an equal one. One that begins with it is beyond 1, the shortest most.
+fn likeness(unknown: &str, name: &str) -> f64 {
+    let likeness = strsim::normalized_damerau_levenshtein(unknown, name);
+    if !unknown.is_empty() && name.starts_with(unknown) { 1.0 + likeness } else { likeness }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_that_begins_so_comes_first_and_few_are_listed() {
+        let known = ["mu", "signal", "sigma_n_per_m", "viscous_nonlinearity.quadratic", "viscous_n_s_per_m"];
+        let nearest = |unknown| nearest_name(unknown, known.into_iter());
+        assert_eq!(nearest("sigma"), Some("sigma_n_per_m"));
+        assert_eq!(nearest("viscous"), Some("viscous_n_s_per_m"));
+        assert_eq!([nearest("sigmal"), nearest("qqqqqqqq"), nearest("")], [Some("signal"), None, None]);
+        let short = unknown_name("key", "nu", known.into_iter());
+        assert!(
+            short.contains("did you mean `mu`? (known here: `mu`, `signal`,") && !short.contains("more"),
+            "{short}"
+        );
+        let many: Vec<String> = (0..70).map(|place| format!("key_{place}")).chain(known.map(String::from)).collect();
+        let long = unknown_name("parameter", "sigma", many.iter().map(String::as_str));
+        assert!(long.contains("did you mean `sigma_n_per_m`? (known here: `sigma_n_per_m`, `signal`, "), "{long}");
+        assert!(long.ends_with(" and 69 more)"), "{long}");
+    }
 }

@@ -7,6 +7,7 @@
 //! The wrench is compared with the one in the log or, without it, with that of the platform's mass and pose in slow motion, as in `fit`.
 
 mod error;
+mod jumps;
 mod warnings;
 
 use std::collections::VecDeque;
@@ -21,6 +22,7 @@ use crate::set_up::{SetUp, Signals};
 use crate::weight::{self, Body};
 
 pub use error::Deviation;
+use jumps::Jumps;
 
 /// The accumulated results of a cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,6 +39,7 @@ pub struct CableErrors {
     pub(crate) flags_before_end: u32,
     /// The forces beside the reference.
     pub(crate) set_up: SetUp,
+    jumps: Jumps,
     /// Frictionless force minus reference, N.
     pub before_n: Deviation,
     /// Compensated force minus reference, N.
@@ -44,8 +47,8 @@ pub struct CableErrors {
 }
 
 impl CableErrors {
-    fn new(cable: &CableParams) -> Self {
-        Self { set_up: SetUp::new(cable.frictionless_gain()), ..Self::default() }
+    fn new(cable: &CableParams, jumps: Jumps) -> Self {
+        Self { set_up: SetUp::new(cable.frictionless_gain()), jumps, ..Self::default() }
     }
 
     /// Whether the sensor has shown any force.
@@ -186,9 +189,10 @@ impl Replay {
     /// # Errors
     /// Returns the errors of [`AnyCompensator::new`].
     pub fn new(robot: &RobotParams<'_>) -> Result<Self, ParamError> {
+        let jumps = robot.sensor_jumps_n().map(|limit_n| Jumps::new(limit_n, robot.monitor().length_jump_m));
         Ok(Self {
             compensator: AnyCompensator::new(robot)?,
-            cables: robot.cables().iter().map(CableErrors::new).collect(),
+            cables: robot.cables().iter().zip(jumps).map(|(cable, jumps)| CableErrors::new(cable, jumps)).collect(),
             wrench_before: WrenchErrors::default(),
             wrench_after: WrenchErrors::default(),
             by_mass: ByMass::new(robot),
@@ -226,6 +230,7 @@ impl Replay {
         let cables = self.cables.iter_mut().zip(&mut self.lateness).zip(sample.cables).zip(outputs);
         for ((((errors, lateness), input), output), reference_n) in cables.zip(sample.reference_force_n) {
             errors.tension.add(input.sensor_force_n);
+            errors.jumps.add(input, elapsed_cycles);
             errors.flagged_count += u64::from(!output.status.is_ok());
             errors.flags |= output.status.bits();
             if output.status == CableStatus::POSE_MISSING {

@@ -99,6 +99,7 @@ impl Replay {
                 format!("{count} of {total} samples are flagged {flags}: {names}")
             });
         }
+        warnings.extend(self.jump_warnings(robot));
         warnings
     }
 }

@@ -1,16 +1,19 @@
 //! The form of a CSV file: where its rows begin, the separator, and the names of the columns.
 
+use std::borrow::Cow;
 use std::cmp::Reverse;
-use std::collections::BTreeSet;
+use std::io::Read;
 
-use csv::{ByteRecord, ReaderBuilder};
+use csv::{ByteRecord, Reader, ReaderBuilder, Trim};
 
-use super::number::{Decimals, clock_nanos};
+use super::blanks::{BLANKS, SingleBlanks, TableText};
+use super::number::{Decimals, clock_nanos, is_without_value};
+use crate::units::are_units;
 
-/// Possible separators.
+/// Possible separators, besides blanks.
 const SEPARATORS: [u8; 3] = *b",;\t";
 /// Marks a line that is not part of the table.
-pub const COMMENT: u8 = b'#';
+const COMMENT: u8 = b'#';
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// Number of lines that show where the table begins.
 const MOST_LINES: usize = 256;
@@ -18,11 +21,14 @@ const MOST_LINES: usize = 256;
 /// The form of a CSV file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form {
+    /// Between cells; a blank stands for one or more of them, or of tabs.
     pub separator: u8,
     /// Column names, in the order of the file.
     pub names: Vec<String>,
     /// The cells of the line under the names, if that has no numbers.
     pub units: Vec<String>,
+    /// The cells of the first row.
+    pub first_row: Vec<String>,
     /// Position of the first row, and its line, from 1.
     pub rows_at: u64,
     pub first_line: u64,
@@ -62,7 +68,42 @@ impl Form {
         let titled = separators.iter().filter_map(|separator| Self::titled(&filled, *separator));
         // The first of those with equally many columns; `max_by_key` would take the last.
         let titled = titled.max_by_key(|form| (form.names.len(), Reverse(form.separator)));
-        titled.or_else(|| Self::from_first_line(beginning, &filled, &separators, comment))
+        if titled.is_some() {
+            return titled;
+        }
+        // Blanks stand in names, dates and remarks too.
+        if separators == SEPARATORS {
+            separators.push(BLANKS);
+        }
+        let by_blanks = || Self::titled(&filled, BLANKS).filter(|form| form.fits_all(&filled));
+        let by_blanks = separators.contains(&BLANKS).then(by_blanks).flatten();
+        by_blanks.or_else(|| Self::from_first_line(beginning, &filled, &separators, comment))
+    }
+
+    /// Whether all rows have as many cells as there are names, but for a last one that is cut off.
+    fn fits_all(&self, filled: &[Line<'_>]) -> bool {
+        let rows = filled.iter().filter(|line| line.number >= self.first_line);
+        let counts: Vec<usize> = rows.map(|line| cells(line.text, self.separator).len()).collect();
+        let count = self.names.len();
+        counts.split_last().is_some_and(|(last, others)| {
+            others.iter().all(|of_row| *of_row == count) && (*last == count || *last < count && !others.is_empty())
+        })
+    }
+
+    /// Whether the first row has a date or a time of day in a column.
+    pub fn has_date(&self, column: usize) -> bool {
+        self.first_row.get(column).is_some_and(|cell| clock_nanos(cell).is_some())
+    }
+
+    /// Returns a reader of text that begins with the first row.
+    pub fn reader<R: Read>(&self, rows: R) -> Reader<TableText<R>> {
+        ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .delimiter(self.separator)
+            .comment(Some(COMMENT))
+            .trim(Trim::All)
+            .from_reader(TableText::new(rows, self.separator))
     }
 
     /// Finds the table by its most frequent number of cells, and above its first row of numbers the names, which lines about the recording may precede
@@ -83,17 +124,32 @@ impl Form {
         };
         let first_row = rows.iter().position(is_row)?;
         let above = rows.get(..first_row)?.iter().rev().take_while(|row| row.len() == count).count();
-        let filled_cells =
-            |row: &Vec<String>| row.iter().filter(|cell| !cell.is_empty()).collect::<BTreeSet<_>>().len();
-        let names_most = |place: &usize| rows.get(*place).map(|row| (Reverse(number_count(row)), filled_cells(row)));
-        // Names are no numbers. Lines about the recording have empty cells, a line of units repeats some; the first of equal ones.
-        let title = (first_row - above..first_row).rev().max_by_key(names_most)?;
+        let start = first_row - above;
+        let is_filled = |place: usize| {
+            let is_value = |cell: &&String| !cell.is_empty() && !is_without_value(cell);
+            rows.get(place).is_some_and(|row| 2 * row.iter().filter(is_value).count() >= count)
+        };
+        let numbers = |place: usize| rows.get(place).map(|row| number_count(row));
+        // The last of the lines of text has the names, or that above a line of units. Names are no numbers, and a remark fills few cells.
+        let last = (start..first_row).rev().min_by_key(|place| (!is_filled(*place), numbers(*place)))?;
+        let has_units = last > start && is_filled(last - 1) && rows.get(last).is_some_and(|row| are_units(row));
+        let title = if has_units { last - 1 } else { last };
         let has_numbers = |place: usize| rows.get(place).is_some_and(|row| number_count(row) > 0);
         let first = title + if has_numbers(title + 1) { 1 } else { 2 };
         let (names, line) = (rows.get(title)?.clone(), filled.get(first)?);
         let units = rows.get(title + 1).filter(|_| first > title + 1).cloned().unwrap_or_default();
         let (rows_at, first_line) = (line.at as u64, line.number);
-        Some(Self { separator, names, units, rows_at, first_line, lacks_header: false, has_fitting_row: true })
+        let first_row = rows.get(first)?.clone();
+        Some(Self {
+            separator,
+            names,
+            units,
+            first_row,
+            rows_at,
+            first_line,
+            lacks_header: false,
+            has_fitting_row: true,
+        })
     }
 
     /// Takes the first line for the names, or the last comment if that line has numbers.
@@ -104,27 +160,35 @@ impl Form {
         comment: Option<&[u8]>,
     ) -> Option<Self> {
         let (header, row) = (filled.first()?, filled.get(1));
-        let separator = separators.iter().copied().max_by_key(|separator| {
-            let count = cells(header.text, *separator).len();
+        // Numbers alone tell the separator best: with another one they are cut or joined.
+        let likeness = |separator: &u8| {
+            let header = cells(header.text, *separator);
+            let count = header.len();
+            let are_numbers = count > 1 && number_count(&header) == count;
             let fits = row.is_none_or(|row| cells(row.text, *separator).len() == count);
-            (count > 1 && fits, count, Reverse(*separator))
-        })?;
+            (*separator != BLANKS || are_numbers).then_some((
+                are_numbers,
+                count > 1 && fits,
+                count,
+                Reverse(*separator),
+            ))
+        };
+        let separator = separators.iter().copied().max_by_key(likeness)?;
         let mut names = cells(header.text, separator);
         let lacks_names = number_count(&names) == names.len();
         let commented =
             comment.map(|text| cells(text, separator)).filter(|other| lacks_names && other.len() == names.len());
         let lacks_header = lacks_names && commented.is_none();
         let first = if lacks_names { Some(header) } else { row };
-        let has_fitting_row = first.is_some_and(|row| {
-            let cells = cells(row.text, separator);
-            cells.len() == names.len() && cells.len() > 1 && number_count(&cells) > 0
-        });
+        let first_row = first.map(|row| cells(row.text, separator)).unwrap_or_default();
+        let has_fitting_row = first_row.len() == names.len() && first_row.len() > 1 && number_count(&first_row) > 0;
         if let Some(commented) = commented {
             names = commented;
         }
         let rows_at = if lacks_names { header.at } else { next_line(beginning, header.at) } as u64;
         let first_line = header.number + u64::from(!lacks_names);
-        Some(Self { separator, names, units: Vec::new(), rows_at, first_line, lacks_header, has_fitting_row })
+        let units = Vec::new();
+        Some(Self { separator, names, units, first_row, rows_at, first_line, lacks_header, has_fitting_row })
     }
 }
 
@@ -148,7 +212,8 @@ fn next_line(bytes: &[u8], at: usize) -> usize {
 
 /// Returns the cells of a line, unquoted and trimmed.
 fn cells(line: &[u8], separator: u8) -> Vec<String> {
-    let mut reader = ReaderBuilder::new().has_headers(false).delimiter(separator).from_reader(line);
+    let line = if separator == BLANKS { Cow::Owned(SingleBlanks::of(line)) } else { Cow::Borrowed(line) };
+    let mut reader = ReaderBuilder::new().has_headers(false).delimiter(separator).from_reader(&*line);
     let mut record = ByteRecord::new();
     // Reading from memory cannot fail, and bytes are not decoded.
     let _ = reader.read_byte_record(&mut record);
@@ -193,7 +258,11 @@ mod tests {
         assert_eq!(named("\"t [s]\",\"F; N\"\n1,2\n"), expected(',', "t [s]|F; N", "1,2\n", 2));
         assert_eq!(named("sep=;\nt;a\n1;2\n"), expected(';', "t|a", "1;2\n", 3));
         assert_eq!(named("# t a\n# t, a\n1,2\n"), expected(',', "t|a", "1,2\n", 3));
-        assert!(form("1,2\n3,4\n").lacks_header);
+        for numbers in
+            ["1,2\n3,4\n", "1;2\n3;4\n", "0,5;1,5\n0,6;1,6\n", "1\t2\n3\t4\n", "1  2,5\n3  4,5\n", "0.1 2 -3\n"]
+        {
+            assert!(form(numbers).lacks_header, "{numbers}");
+        }
         assert!(form("t,a\n1,2\n").has_fitting_row && !form("run one, good\nrun two\n").has_fitting_row);
         assert_eq!(Form::find(b"# nothing\n\n"), None);
         assert_eq!(form("t,a\n").rows_at, 4);
@@ -201,6 +270,15 @@ mod tests {
         // A row that is cut off, and rows that do not fit the header, leave the names where they are.
         assert_eq!(named("t,a\n1\n2,3\n4,5\n"), expected(',', "t|a", "1\n2,3\n4,5\n", 2));
         assert_eq!(named("t,a\n1,2,\n3,4,\n"), expected(',', "t|a", "1,2,\n3,4,\n", 2));
+        // Blanks, if nothing else separates.
+        let rows = "0,001 1,9  0\n0,002 1,9  -0,5\n";
+        assert_eq!(
+            named(&format!(" time position\t velocity\n{rows}")),
+            expected(' ', "time|position|velocity", rows, 2)
+        );
+        assert_eq!(named("# t \"F [N]\"\n1 2\n"), expected(' ', "t|F [N]", "1 2\n", 2));
+        assert_eq!(named("Force in N;t\n1;2\n3;4\n"), expected(';', "Force in N|t", "1;2\n3;4\n", 2));
+        assert_eq!(form("a b\n1 2\n3\n4 5\n").names, ["a b"]);
         // Channels named by numbers.
         assert_eq!(named("t;1;2\n0;5;6\n1;5;6\n"), expected(';', "t|1|2", "0;5;6\n1;5;6\n", 2));
     }
@@ -230,6 +308,13 @@ mod tests {
         // A date of the recording, and a rate with its unit.
         let dated = "03.05.2024 12:00:00;;\nRate;1000;Hz\n";
         assert_eq!(form(&format!("{dated}t;F;l\ns;N;m\n{rows}")), expected(';', "t|F|l", "s|N|m", rows, 5));
+        // With as many cells as the table has, as a logger writes it.
+        let named = "Prüfstand 3;Seil A;Datum\n";
+        assert_eq!(form(&format!("{named}Zeit;F;l\n{rows}")), expected(';', "Zeit|F|l", "", rows, 3));
+        assert_eq!(form(&format!("{named}Zeit;F;l\ns;Skt;m\n{rows}")), expected(';', "Zeit|F|l", "s|Skt|m", rows, 4));
+        // The second line has names beside a unit.
+        let channels = "Time;Analog 1;Analog 2\nms;Speed;Torque\n";
+        assert_eq!(form(&format!("{channels}{rows}")), expected(';', "ms|Speed|Torque", "", rows, 3));
         // One row.
         let row = "0,001;5,3;1,2\n";
         assert_eq!(form(&format!("{padded}t;F;l\ns;N;m\n{row}")), expected(';', "t|F|l", "s|N|m", row, 6));

@@ -4,13 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use fric_core::robot::file::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
-use fric_core::robot::nearest_name;
 
 use super::CsvError;
 use crate::csv_form::Form;
-
-/// Units that the values have without a factor, and no unit.
-const OWN_UNITS: [&str; 7] = ["", "-", "s", "n", "m", "m/s", "nm"];
+use crate::units::{Head, Unit, stated_unit};
 
 /// A column to read.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,21 +103,28 @@ impl Columns {
         Ok(Self { time, force_n, length_m, speed_m_per_s, reference_n, pose, wrench })
     }
 
-    /// Returns a remark about columns that are in other units by the line of units, but have no factor.
+    /// Returns a remark about columns that are in other units by the line of units or their names, but have no factor.
     pub fn units_remark(&self, path: &Path, form: &Form) -> Option<String> {
         let Self { time, force_n, length_m, speed_m_per_s, reference_n, pose, wrench } = self;
         let groups = [force_n, length_m, speed_m_per_s, reference_n, pose, wrench];
+        // A date is in no unit, whatever its column is called.
+        let time = Some(time).filter(|time| !form.has_date(time.index));
         let other_unit = |column: &Column| {
-            let unit = form.units.get(column.index)?.trim_matches(['[', ']', '(', ')', ' ']);
-            let is_other = column.has_plain_values() && !OWN_UNITS.contains(&unit.to_lowercase().as_str());
-            is_other.then(|| format!("`{}` is in {unit}", column.table.column))
+            let name = &column.table.column;
+            let stated = form.units.get(column.index).and_then(|cell| stated_unit(cell));
+            let unit = match stated {
+                Some(stated) => Some(stated).filter(|unit| Unit::of(unit).is_none_or(|of| of.is_other_than_ours(unit))),
+                // What is in brackets and not known may be no unit.
+                None => Head::of(name).unit.filter(|unit| Unit::of(unit).is_some_and(|of| of.is_other_than_ours(unit))),
+            };
+            unit.filter(|_| column.has_plain_values()).map(|unit| format!("`{name}` is in {unit}"))
         };
         let all: Vec<String> =
-            std::iter::once(time).chain(groups.into_iter().flatten().flatten()).filter_map(other_unit).collect();
+            time.into_iter().chain(groups.into_iter().flatten().flatten()).filter_map(other_unit).collect();
         (!all.is_empty()).then(|| {
             let (path, all) = (path.display(), all.join(", "));
             format!(
-                "`{path}`: by the line of units {all}, which is not applied; state the `factor` under `[log.columns]` in the robot file"
+                "`{path}`: by the header {all}, which is not applied; state the `factor` under `[log.columns]` in the robot file"
             )
         })
     }
@@ -159,20 +163,17 @@ impl Finder<'_> {
         match (first, second) {
             (Some(_), Some(_)) => Err(CsvError::Repeated { path: self.path.to_owned(), column: wanted.to_owned() }),
             (Some(index), None) => Ok(Some(Column { index, table })),
-            (None, _) if stated.is_some() => Err(self.missing(wanted)),
+            (None, _) if stated.is_some() => Err(CsvError::Misnamed {
+                path: self.path.to_owned(),
+                key: key.to_owned(),
+                column: wanted.to_owned(),
+                columns: self.names.to_vec(),
+            }),
             (None, _) => Ok(None),
         }
     }
 
     fn missing(&self, wanted: &str) -> CsvError {
-        let mut columns = self.names.to_vec();
-        // The column that was probably meant comes first.
-        if let Some(nearest) = nearest_name(wanted, self.names.iter().map(String::as_str))
-            && let Some(place) = self.names.iter().position(|name| name == nearest)
-        {
-            let nearest = columns.remove(place);
-            columns.insert(0, nearest);
-        }
-        CsvError::Missing { path: self.path.to_owned(), wanted: wanted.to_owned(), columns }
+        CsvError::Missing { path: self.path.to_owned(), wanted: wanted.to_owned(), columns: self.names.to_vec() }
     }
 }

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use fric_core::robot::nearest_name;
 use thiserror::Error;
 
 use super::units::TimeUnit;
@@ -15,6 +16,11 @@ mod advice {
     pub const COLUMNS: &str = "leave out the columns that are no signals of the robot";
     pub const NAME: &str = "name the right columns under `[log.columns]` in the robot file, such as \
                             \"cable1.force_n\" = { column = \"Load cell 1 [kg]\", factor = 9.80665 }";
+    pub const KEY: &str = "write the name there as it stands in the header";
+    pub const SEPARATE: &str =
+        "separate the cells by commas, semicolons, tabs or blanks, as many in each row as there are names";
+    pub const UNITLESS: &str =
+        "a date takes no factor and no offset: remove those of `time_s` under `[log.columns]` in the robot file";
     pub const RENAME: &str = "take one of the two out, or give it another name";
     pub const TIME: &str =
         "give the column of `time_s` the `factor` to seconds under `[log.columns]` in the robot file";
@@ -83,6 +89,29 @@ pub enum CsvError {
         /// The existing columns.
         columns: Vec<String>,
     },
+    /// The robot file names a column that does not exist.
+    #[error(
+        "`{}` has no column `{column}`, which the robot file names for `{key}` under `[log.columns]`; {}it has {}; {}",
+        path.display(), did_you_mean(column, columns), listed(columns), advice::KEY
+    )]
+    Misnamed {
+        /// The file.
+        path: PathBuf,
+        /// The signal.
+        key: String,
+        /// The column that the robot file names.
+        column: String,
+        /// The existing columns.
+        columns: Vec<String>,
+    },
+    /// Nothing separates the cells.
+    #[error("`{}` has one column alone, `{name}`; {}", path.display(), advice::SEPARATE)]
+    OneColumn {
+        /// The file.
+        path: PathBuf,
+        /// Its name.
+        name: String,
+    },
     /// Two columns have the name of a signal.
     #[error("`{}`: the column `{column}` stands there twice; {}", path.display(), advice::RENAME)]
     Repeated {
@@ -94,6 +123,18 @@ pub enum CsvError {
     /// A cell is not a number.
     #[error("`{}`, line {line}, column `{column}`: `{text}` is no number; {}", path.display(), cell_advice(column, text))]
     Cell {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// Its content.
+        text: String,
+    },
+    /// A date stands in a column with a factor.
+    #[error("`{}`, line {line}, column `{column}`: `{text}` is a date or a time of day; {}", path.display(), advice::UNITLESS)]
+    DateWithFactor {
         /// The file.
         path: PathBuf,
         /// The line, from 1.
@@ -161,6 +202,11 @@ fn cell_advice(column: &str, text: &str) -> &'static str {
     }
 }
 
+fn did_you_mean(column: &str, columns: &[String]) -> String {
+    let nearest = nearest_name(column, columns.iter().map(String::as_str));
+    nearest.map_or_else(String::new, |nearest| format!("did you mean `{nearest}`? "))
+}
+
 fn listed(columns: &[String]) -> String {
     let names: Vec<String> = columns.iter().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
     let more = columns.len().saturating_sub(MOST_LISTED);
@@ -177,6 +223,9 @@ impl CsvError {
             Self::NotUtf8 { .. } => advice::UTF8,
             Self::NoHeader { .. } => advice::HEADER,
             Self::Missing { .. } => advice::NAME,
+            Self::Misnamed { .. } => advice::KEY,
+            Self::OneColumn { .. } => advice::SEPARATE,
+            Self::DateWithFactor { .. } => advice::UNITLESS,
             Self::Repeated { .. } => advice::RENAME,
             Self::Cell { column, text, .. } => cell_advice(column, text),
             Self::Time { unit, .. } => time_advice(*unit),

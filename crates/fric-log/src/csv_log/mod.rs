@@ -1,6 +1,6 @@
 //! CSV logs: a header, and one row of numbers per time.
 //!
-//! The following is detected automatically: comma, semicolon or tab as separator, decimal points or commas, a byte order mark, quotes, lines starting
+//! The following is detected automatically: comma, semicolon, tab or blanks as separator, decimal points or commas, a byte order mark, quotes, lines starting
 //! with `#`, a header in one of these, lines about the recording above the header, and a line of units under it. Empty cells and those that say that
 //! there is no value (`nan`, `NA`, `---`) are gaps of their signal. Columns are named like the keys of
 //! [`ColumnTable`](fric_core::robot::file::ColumnTable), or as the robot file states. A row with too many or too few cells, or without a time, is
@@ -15,17 +15,17 @@ mod error;
 mod units;
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom, Take};
+use std::io::{self, Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
-use csv::{ByteRecord, Reader, ReaderBuilder, Trim};
+use csv::{ByteRecord, Reader};
 
 pub use self::error::CsvError;
 pub use self::units::GREAT_INTERVAL_S;
 
 use self::columns::{Column, Columns, Wanted};
 use self::units::{Quantity, TimeUnit, Units};
-use crate::csv_form::{COMMENT, Decimals, Form, clock_nanos, is_without_value, scaled, text_of};
+use crate::csv_form::{Decimals, Form, TableText, clock_nanos, is_without_value, scaled, text_of};
 use crate::signals::{Role, SignalPaths};
 
 /// Number of bytes that contain the header and enough rows to tell where the table begins.
@@ -72,9 +72,12 @@ struct CsvFile {
 enum State {
     /// Nothing has been read yet.
     Open,
-    Reading(Box<(Columns, Reader<BufReader<Lines>>)>),
+    Reading(Box<(Columns, Rows)>),
     Ended,
 }
+
+/// A reader of the rows of a file.
+type Rows = Reader<TableText<Lines>>;
 
 /// Rows whose lines are of bounded length, because each is held in memory.
 #[derive(Debug)]
@@ -90,6 +93,28 @@ impl Read for Lines {
         let end = buffer.get(..count).and_then(|bytes| bytes.iter().rposition(|byte| *byte == b'\n'));
         self.line_bytes = end.map_or(self.line_bytes + count, |end| count - end);
         if self.line_bytes > LINE_BYTES { Err(io::ErrorKind::InvalidData.into()) } else { Ok(count) }
+    }
+}
+
+impl CsvFile {
+    /// Returns a reader of the rows from the first one on.
+    fn rows(&self) -> Result<Rows, CsvError> {
+        let Self { path, file, end, form, .. } = self;
+        let refused = |source| CsvError::Read { path: path.clone(), source };
+        let mut rows = file.try_clone().map_err(refused)?;
+        rows.seek(SeekFrom::Start(form.rows_at)).map_err(refused)?;
+        Ok(form.reader(Lines { rows: rows.take(end.saturating_sub(form.rows_at)), line_bytes: 0 }))
+    }
+
+    fn refusal(&self, error: csv::Error) -> CsvError {
+        let path = self.path.clone();
+        match error.into_kind() {
+            csv::ErrorKind::Io(source) if source.kind() == io::ErrorKind::InvalidData => {
+                CsvError::LongLine { path, most_bytes: LINE_BYTES }
+            }
+            csv::ErrorKind::Io(source) => CsvError::Read { path, source },
+            other => CsvError::Read { path, source: io::Error::other(format!("{other:?}")) },
+        }
     }
 }
 
@@ -128,6 +153,9 @@ impl CsvLog {
         };
         if form.lacks_header {
             return Err(CsvError::NoHeader { path: path.to_owned(), line: form.first_line });
+        }
+        if let [name] = form.names.as_slice() {
+            return Err(CsvError::OneColumn { path: path.to_owned(), name: name.clone() });
         }
         if len > BEGINNING_BYTES && form.rows_at >= BEGINNING_BYTES {
             return Err(CsvError::LongHeader { path: path.to_owned(), most_bytes: BEGINNING_BYTES });
@@ -171,6 +199,33 @@ impl CsvLog {
     /// Returns the line of units under the names in the first file; empty if there is none.
     pub(crate) fn column_units(&self) -> &[String] {
         self.files.first().map_or(&[], |file| file.form.units.as_slice())
+    }
+
+    /// Returns of each column of the first file whether its first row has a date or a time of day there.
+    pub(crate) fn dated_columns(&self) -> Vec<bool> {
+        let has_date = |file: &CsvFile| (0..file.form.names.len()).map(|column| file.form.has_date(column)).collect();
+        self.files.first().map(has_date).unwrap_or_default()
+    }
+
+    /// Returns of each column of the first file whether all its rows say the same; of one row that is unknown, and false.
+    pub(crate) fn unchanging_columns(&self) -> Result<Vec<bool>, CsvError> {
+        let Some(file) = self.files.first() else { return Ok(Vec::new()) };
+        let (mut rows, mut row) = (file.rows()?, ByteRecord::new());
+        // The first value of each column, and whether no other has followed.
+        let mut columns: Vec<(Vec<u8>, bool)> = vec![(Vec::new(), true); file.form.names.len()];
+        let mut row_count = 0_u64;
+        while columns.iter().any(|(_, is_same)| *is_same)
+            && rows.read_byte_record(&mut row).map_err(|error| file.refusal(error))?
+        {
+            row_count += 1;
+            for ((first, is_same), cell) in columns.iter_mut().zip(&row).filter(|(_, cell)| !cell.is_empty()) {
+                if first.is_empty() {
+                    first.extend_from_slice(cell);
+                }
+                *is_same &= first == cell;
+            }
+        }
+        Ok(columns.into_iter().map(|(_, is_same)| is_same && row_count > 1).collect())
     }
 
     /// Returns the bytes read so far, and the total.
@@ -256,24 +311,15 @@ impl CsvLog {
 
     /// Starts the current file.
     fn start(&mut self, wanted: &Wanted<'_>) -> Result<(), CsvError> {
-        let Some(CsvFile { path, file, end, form, .. }) = self.files.get(self.current) else { return Ok(()) };
+        let Some(file) = self.files.get(self.current) else { return Ok(()) };
+        let CsvFile { path, form, .. } = file;
         let mut remarks = Vec::new();
         let columns = Columns::find(path, form, wanted, &mut remarks)?;
         remarks.extend(columns.units_remark(path, form));
         remarks.retain(|remark| !self.remarks.contains(remark));
         self.remarks.extend(remarks);
         self.units.begin_file();
-        let refused = |source| CsvError::Read { path: path.clone(), source };
-        let mut rows = file.try_clone().map_err(refused)?;
-        rows.seek(SeekFrom::Start(form.rows_at)).map_err(refused)?;
-        let reader = ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .delimiter(form.separator)
-            .comment(Some(COMMENT))
-            .trim(Trim::All)
-            .from_reader(BufReader::new(Lines { rows: rows.take(end.saturating_sub(form.rows_at)), line_bytes: 0 }));
-        self.state = State::Reading(Box::new((columns, reader)));
+        self.state = State::Reading(Box::new((columns, file.rows()?)));
         Ok(())
     }
 
@@ -281,19 +327,11 @@ impl CsvLog {
     fn read_row(&mut self) -> Result<bool, CsvError> {
         let State::Reading(reading) = &mut self.state else { return Ok(false) };
         let (columns, reader) = &mut **reading;
-        let Some(CsvFile { path, form, .. }) = self.files.get(self.current) else { return Ok(false) };
+        let Some(file) = self.files.get(self.current) else { return Ok(false) };
+        let CsvFile { path, form, .. } = file;
         let before: u64 = self.files.iter().take(self.current).map(|file| file.len).sum();
         loop {
-            let has_row = reader.read_byte_record(&mut self.record).map_err(|error| {
-                let source = match error.into_kind() {
-                    csv::ErrorKind::Io(source) => source,
-                    other => io::Error::other(format!("{other:?}")),
-                };
-                if source.kind() == io::ErrorKind::InvalidData {
-                    return CsvError::LongLine { path: path.clone(), most_bytes: LINE_BYTES };
-                }
-                CsvError::Read { path: path.clone(), source }
-            })?;
+            let has_row = reader.read_byte_record(&mut self.record).map_err(|error| file.refusal(error))?;
             self.bytes_read = before + form.rows_at + reader.position().byte();
             if !has_row {
                 return Ok(false);
@@ -305,6 +343,7 @@ impl CsvLog {
                     Some(stamp_nanos) => {
                         self.row.stamp_nanos = stamp_nanos;
                         cells.fill(columns, &mut self.row, &mut self.units)?;
+                        self.units.compare(stamp_nanos, &self.row, columns.force_n.len());
                         // A date needs no unit.
                         if !cells.text(&columns.time).contains(&b':') {
                             self.units.add_stamp(stamp_nanos, columns.time.has_plain_values());
@@ -372,12 +411,22 @@ impl<'a> Cells<'a> {
 
     /// Returns the time; `None` if there is none.
     fn stamp_nanos(&mut self, column: &Column) -> Result<Option<i64>, CsvError> {
-        if let Some(exponent) = column.nanos_exponent()
-            && let Ok(text) = std::str::from_utf8(self.text(column))
-            && let Some(nanos) =
-                scaled(text, exponent).or_else(|| clock_nanos(text).filter(|_| exponent == SECONDS_EXPONENT))
-        {
-            return Ok(Some(nanos));
+        let exponent = column.nanos_exponent();
+        if let Ok(text) = std::str::from_utf8(self.text(column)) {
+            if let Some(nanos) = exponent.and_then(|exponent| scaled(text, exponent)) {
+                return Ok(Some(nanos));
+            }
+            if let Some(nanos) = clock_nanos(text) {
+                return match exponent {
+                    Some(SECONDS_EXPONENT) => Ok(Some(nanos)),
+                    _ => Err(CsvError::DateWithFactor {
+                        path: self.path.to_owned(),
+                        line: self.line,
+                        column: column.table.column.clone(),
+                        text: text.to_owned(),
+                    }),
+                };
+            }
         }
         let nanos = column.value(self.number(column)?) * 1e9;
         if nanos.is_nan() {
@@ -420,14 +469,16 @@ impl<'a> Cells<'a> {
             let values = &mut row.values[role as usize];
             values.clear();
             for (quantity, columns) in groups {
-                for column in *columns {
+                for (cable, column) in columns.iter().enumerate() {
                     let Some(column) = column else {
                         values.push(f64::NAN);
                         continue;
                     };
                     let value = column.value(self.number(column)?);
                     if let Some(quantity) = quantity {
-                        units.add(place, *quantity, &column.table.column, value);
+                        // The offset says nothing about the unit of the column.
+                        let without_offset = value - column.table.offset;
+                        units.add(place, (role, *quantity, cable), &column.table.column, without_offset);
                         place += 1;
                     }
                     values.push(value);

@@ -1,4 +1,9 @@
 //! Detects values that seem to have another unit than their column.
+//!
+//! The size of a value alone says little about a large robot: what a second measure of the same shows is in the right unit.
+
+use super::CsvRow;
+use crate::signals::Role;
 
 /// A quantity whose unit is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +27,7 @@ impl Quantity {
 /// The magnitudes of the values of one column.
 #[derive(Debug, Clone)]
 struct Sizes {
-    quantity: Quantity,
+    of: (Role, Quantity, usize),
     column: String,
     count: u64,
     sum: f64,
@@ -35,6 +40,8 @@ pub(super) struct Units {
     /// Those of each column, file by file, and where the columns of the present file begin.
     sizes: Vec<Sizes>,
     first_of_file: usize,
+    /// Of each cable.
+    measures: Vec<Measures>,
     last_stamp_nanos: Option<i64>,
     /// Number of rows with a time, and of those with the time of the row before.
     timed_count: u64,
@@ -107,16 +114,33 @@ impl Units {
         self.first_of_file = self.sizes.len();
     }
 
-    /// Adds the converted value of a quantity in the column of this name. `place` is that of the column among those of the file.
-    pub fn add(&mut self, place: usize, quantity: Quantity, column: &str, value: f64) {
+    /// Adds the value of a column of this name, without its offset. `place` is that of the column among those of the file; `of` is its signal, and the
+    /// index among those of its kind, such as the cable.
+    pub fn add(&mut self, place: usize, of: (Role, Quantity, usize), column: &str, value: f64) {
         let place = self.first_of_file + place;
         if self.sizes.len() <= place {
-            self.sizes.push(Sizes { quantity, column: column.to_owned(), count: 0, sum: 0.0, greatest: 0.0 });
+            self.sizes.push(Sizes { of, column: column.to_owned(), count: 0, sum: 0.0, greatest: 0.0 });
         }
         if let Some(sizes) = self.sizes.get_mut(place).filter(|_| value.is_finite()) {
             sizes.count += 1;
             sizes.sum += value.abs();
             sizes.greatest = sizes.greatest.max(value.abs());
+        }
+    }
+
+    /// Compares the measures of each of so many cables with one another.
+    pub fn compare(&mut self, stamp_nanos: i64, row: &CsvRow, cable_count: usize) {
+        self.measures.resize_with(cable_count, Measures::default);
+        let of_cables = row.values(Role::Cable).unwrap_or_default();
+        let references_n = row.values(Role::Reference).unwrap_or_default();
+        for (cable, measures) in self.measures.iter_mut().enumerate() {
+            let of_cable = |quantity: usize| of_cables.get(quantity * cable_count + cable).copied();
+            if let (Some(force_n), Some(reference_n)) = (of_cable(0), references_n.get(cable)) {
+                measures.forces.add(force_n, *reference_n);
+            }
+            if let (Some(length_m), Some(speed_m_per_s)) = (of_cable(1), of_cable(2)) {
+                measures.motion.add(stamp_nanos, length_m, speed_m_per_s);
+            }
         }
     }
 
@@ -164,13 +188,13 @@ impl Units {
                  `factor = 86400.0` under `[log.columns]` in the robot file"
             ));
         }
-        let of = |quantity| self.sizes.iter().filter(move |of| of.quantity == quantity && of.count > 0);
+        let of = |quantity| self.sizes.iter().filter(move |sizes| sizes.of.1 == quantity && sizes.count > 0);
         #[expect(clippy::cast_precision_loss, reason = "a mean for people")]
         let mean_n = |of: &Sizes| of.sum / of.count as f64;
         let greatest = |of: &Sizes| of.greatest;
         // The columns beyond a limit are named, unless it is all of them.
         let mut warn = |quantity, what: &str, size: &dyn Fn(&Sizes) -> f64, most: f64, other: &str, factor: &str| {
-            let great: Vec<&Sizes> = of(quantity).filter(|of| size(of) > most).collect();
+            let great: Vec<&Sizes> = of(quantity).filter(|of| size(of) > most && !self.is_confirmed(of)).collect();
             let Some(value) = great.iter().map(|of| size(of)).reduce(f64::max) else { return };
             let columns = if great.len() < of(quantity).count() {
                 let mut names: Vec<String> = great.iter().map(|of| format!("`{}`", of.column)).collect();
@@ -200,5 +224,98 @@ impl Units {
             ));
         }
         warnings
+    }
+
+    /// Whether another measure of a cable shows the same, and is not too great itself. Two forces confirm each other, unless they are too small: a
+    /// large robot has great forces, but none has so small ones.
+    fn is_confirmed(&self, sizes: &Sizes) -> bool {
+        let (_, quantity, cable) = sizes.of;
+        let Some(measures) = self.measures.get(cable) else { return false };
+        let is_usual = |other: Quantity, most: f64| {
+            self.sizes.iter().filter(|sizes| sizes.of.1 == other && sizes.of.2 == cable).all(|of| of.greatest <= most)
+        };
+        match quantity {
+            Quantity::Force => measures.forces.agree() && sizes.greatest > SMALL_FORCE_N,
+            Quantity::Length => measures.motion.ways.agree() && is_usual(Quantity::Speed, GREAT_SPEED_M_PER_S),
+            Quantity::Speed => measures.motion.ways.agree() && is_usual(Quantity::Length, GREAT_LENGTH_M),
+            Quantity::Position => false,
+        }
+    }
+}
+
+/// Least squared correlation of two measures of the same, and greatest ratio of their sizes. The smallest ratio of two units is 2.2, of kilograms and
+/// pounds; half and twice the distance from 1 tell the same of speeds that are filtered or late.
+const LEAST_CORRELATION: f64 = 0.5;
+const GREATEST_RATIO: f64 = 1.3;
+/// Time over which the length changes between two comparisons, s: the noise of a length is small beside its change then.
+const STEP_S: f64 = 0.1;
+/// Longest time between two samples that belong together, s.
+const LONGEST_GAP_S: f64 = 0.5;
+
+/// Two measures of a cable's force, and two of its motion.
+#[derive(Debug, Clone, Default)]
+struct Measures {
+    forces: Pair,
+    motion: Motion,
+}
+
+/// Sums over two measures of the same quantity.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pair {
+    one: f64,
+    other: f64,
+    both: f64,
+}
+
+impl Pair {
+    fn add(&mut self, one: f64, other: f64) {
+        if one.is_finite() && other.is_finite() {
+            self.one += one * one;
+            self.other += other * other;
+            self.both += one * other;
+        }
+    }
+
+    /// Whether both show the same.
+    fn agree(&self) -> bool {
+        let ratio = (self.one / self.other).sqrt();
+        self.both > 0.0
+            && self.both * self.both > LEAST_CORRELATION * self.one * self.other
+            && (GREATEST_RATIO.recip()..GREATEST_RATIO).contains(&ratio)
+    }
+}
+
+/// The way of a cable, by the change of its length and by its speed.
+#[derive(Debug, Clone, Default)]
+struct Motion {
+    /// Time, length and speed of the last sample.
+    last: Option<(i64, f64, f64)>,
+    /// Time since the present step began, s, and the ways in it, m.
+    step: (f64, [f64; 2]),
+    ways: Pair,
+}
+
+impl Motion {
+    fn add(&mut self, stamp_nanos: i64, length_m: f64, speed_m_per_s: f64) {
+        if !(length_m.is_finite() && speed_m_per_s.is_finite()) {
+            return;
+        }
+        let Some((last_nanos, last_m, last_m_per_s)) = self.last.replace((stamp_nanos, length_m, speed_m_per_s)) else {
+            return;
+        };
+        #[expect(clippy::cast_precision_loss, reason = "an interval between samples")]
+        let passed_s = stamp_nanos.saturating_sub(last_nanos) as f64 * 1e-9;
+        if !(passed_s > 0.0 && passed_s <= LONGEST_GAP_S) {
+            self.step = Default::default();
+            return;
+        }
+        let (lasted_s, [by_length_m, by_speed_m]) = &mut self.step;
+        *lasted_s += passed_s;
+        *by_length_m += length_m - last_m;
+        *by_speed_m += 0.5 * (last_m_per_s + speed_m_per_s) * passed_s;
+        if *lasted_s >= STEP_S {
+            self.ways.add(*by_length_m, *by_speed_m);
+            self.step = Default::default();
+        }
     }
 }

@@ -134,6 +134,26 @@ impl Log {
         }
     }
 
+    /// Returns of each column of a log of rows whether it has dates or times of day, by the first row.
+    #[must_use]
+    pub fn dated_columns(&self) -> Vec<bool> {
+        match &self.content {
+            Content::Recording(_) | Content::Bag(_) => Vec::new(),
+            Content::Csv(table) => table.dated_columns(),
+        }
+    }
+
+    /// Returns of each column of a log of rows whether it is the same in all rows of the first file, which are read for this.
+    ///
+    /// # Errors
+    /// Returns a [`LogError`] if they cannot be read.
+    pub fn unchanging_columns(&self) -> Result<Vec<bool>, LogError> {
+        match &self.content {
+            Content::Recording(_) | Content::Bag(_) => Ok(Vec::new()),
+            Content::Csv(table) => Ok(table.unchanging_columns()?),
+        }
+    }
+
     /// Returns the names of the attachments.
     #[must_use]
     pub fn attachment_names(&self) -> Vec<String> {

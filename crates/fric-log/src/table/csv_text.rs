@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::{fs, io};
 
-use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
+use csv::{ErrorKind, StringRecord};
 
 use super::{NumberTable, TableError};
-use crate::csv_form::{COMMENT, Decimals, Form};
+use crate::csv_form::{Decimals, Form};
 
 /// Number of bytes that contain the header and enough rows to tell where the table begins.
 const BEGINNING_BYTES: usize = 1 << 18;
@@ -44,13 +44,7 @@ pub(super) fn read(path: &Path) -> Result<NumberTable, TableError> {
         return Err(TableError::Cell { path: path.to_owned(), line, column, text });
     }
     let rows = usize::try_from(form.rows_at).ok().and_then(|at| whole.get(at..)).unwrap_or_default();
-    let mut reader = ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .delimiter(form.separator)
-        .comment(Some(COMMENT))
-        .trim(Trim::All)
-        .from_reader(rows);
+    let mut reader = form.reader(rows);
     let line_of = |position: Option<&csv::Position>| form.first_line - 1 + position.map_or(1, csv::Position::line);
     let mut columns = empty_columns(path, &form.names)?;
     let (mut decimals, mut row) = (Decimals::default(), StringRecord::new());

@@ -117,6 +117,8 @@ fn all_forms_give_the_same_rows() {
         "# a, rig; of the lab\n\"time_s\", \"a.length_m\" ,a.speed_m_per_s,note,a.force_n\n\n0,0.25,1,start,10.5\n\
          # here the door was opened\n0.001,0.251,1,,11\n\"0.002\",0.252,1,\"end, at last\",11.5\n",
         "sep=;\ntime_s;a.force_n;a.length_m;a.speed_m_per_s\n0;10.5;0.25;1\n0.001;11;0.251;1\n0.002;11.5;0.252;1\n",
+        "time_s  a.force_n\ta.length_m a.speed_m_per_s\n  0 10.5   0.25 1  \n0.001 11\t0.251 1.0\n0.002 11.5 0.252 1\n",
+        "# time_s a.force_n a.length_m a.speed_m_per_s\n0.000e+00 1.05e+01 2.5e-01 1e0\n1e-3 11 0.251 1\n2e-3 11.5 0.252 1\n",
         "# time_s,a.force_n,a.length_m,a.speed_m_per_s\n0,10.5,0.25,1\n0.001,11,0.251,1\n0.002,11.5,0.252,1\n",
     ] {
         read(text).is(&ROWS);
@@ -199,7 +201,16 @@ fn what_cannot_be_used_is_told_with_its_place() {
     read("# nothing\n").fails(&["no whole row"]);
     read(&format!("{header}0,,\n1,,nan\n")).fails(&["no row has a number"]);
     read(&format!("{header}0,1\n1,1\n")).fails(&["no row that can be used", "line 2 has 2 cells under a header of 3"]);
-    read("0,1,2\n0.001,1,2\n").fails(&["line 1", "numbers where the names", "put a line"]);
+    for separator in [",", ";", "\t", "  "] {
+        read(&"0,1,2\n0.001,1,2\n".replace(',', separator)).fails(&["line 1", "numbers where the names", "put a line"]);
+    }
+    read("time force length\n0 1\n0.1 1 2 3\n")
+        .fails(&["one column alone, `time force length`", "as many in each row"]);
+    let dated = read_files(
+        &[("run.csv", b"Zeit [ms];a.force_n;a.length_m\n03.05.2026 12:34:56;1;2\n")],
+        &[("time_s", column("Zeit [ms]", 1e-3, 0.0))],
+    );
+    dated.fails(&["line 2, column `Zeit [ms]`: `03.05.2026 12:34:56` is a date", "takes no factor", "remove"]);
     read("time_s,a.force_n,a.force_n,a.length_m\n0,1,1,2\n").fails(&["`a.force_n` stands there twice"]);
     let cut = read(&format!("{header}0,1,2\n0.001,1,2\n0.002,1,2.1"));
     assert_eq!(cut.rows.len(), 2);
@@ -216,9 +227,29 @@ fn columns_that_are_missing_are_named_beside_those_there_are() {
     read_files(&[("run.csv", text.as_bytes())], std::slice::from_ref(&time))
         .fails(&["no column `a.force_n`; it has", "`Force a`"]);
     let force = ("a.force_n", column("Force A", 1.0, 0.0));
-    // The nearest one first.
-    read_files(&[("run.csv", text.as_bytes())], &[time, force]).fails(&["no column `Force A`; it has `Force a`, "]);
+    read_files(&[("run.csv", text.as_bytes())], &[time, force]).fails(&[
+        "no column `Force A`, which the robot file names for `a.force_n`",
+        "did you mean `Force a`? it has `t`, ",
+    ]);
     read("time_s,a.force_n,a.length_m,pose.x_m,pose.y_m\n0,1,2,3,4\n").warns(&["no column `pose.z_m`"]);
+}
+
+/// Columns whose names have another unit than the signal.
+#[test]
+fn units_in_names_that_no_factor_applies_are_told() {
+    let text = "Zeit [ms],F_Winde/kN,l (mm),v [m/s]\n12:00:00.1,1.5,200,0.1\n12:00:00.2,1.5,201,0.1\n";
+    let columns = |factor| {
+        [
+            ("time_s", column("Zeit [ms]", 1.0, 0.0)),
+            ("a.force_n", column("F_Winde/kN", factor, 0.0)),
+            ("a.length_m", column("l (mm)", 1.0, 0.0)),
+            ("a.speed_m_per_s", column("v [m/s]", 1.0, 0.0)),
+        ]
+    };
+    read_files(&[("run.csv", text.as_bytes())], &columns(1.0))
+        .warns(&["by the header `F_Winde/kN` is in kN, `l (mm)` is in mm, which is not applied"]);
+    let told = read_files(&[("run.csv", text.as_bytes())], &columns(1e3));
+    told.warns(&["by the header `l (mm)` is in mm, which"]);
 }
 
 #[test]
@@ -250,6 +281,45 @@ fn values_that_look_like_another_unit_are_warned_of() {
     read(two).warns(&["in `a.force_n` forces are on average 5000", "grams"]);
     let three = "time_s,a.force_n,a.length_m,a.reference_n\n0,0.05,1.5,9\n0.001,0.05,1.5,9\n";
     assert!(read(three).warnings.is_empty(), "a slack cable");
+}
+
+/// A winch of a kite pays out 300 m, and the forces of a mast are those of a lorry.
+#[test]
+fn great_values_that_another_measure_confirms_are_no_other_unit() {
+    let text = |force: f64, reference: f64, size: f64, speed: f64| {
+        let row = |row: i32| {
+            let angle = 0.005 * f64::from(row);
+            let (length_m, speed_m_per_s) = (size * (1.0 + 0.5 * angle.sin()), speed * size * 0.025 * angle.cos());
+            let ripple = 1.0 + 0.2 * angle.sin();
+            format!(
+                "{:.1},{},{length_m},{speed_m_per_s},{}\n",
+                0.1 * f64::from(row),
+                force * ripple,
+                reference * ripple
+            )
+        };
+        let rows: String = (0..300).map(row).collect();
+        format!("time_s,a.force_n,a.length_m,a.speed_m_per_s,a.reference_n\n{rows}")
+    };
+    let units = |text: &str, columns: &[(&str, ColumnTable)]| -> Vec<String> {
+        let mut warnings = read_files(&[("run.csv", text.as_bytes())], columns).warnings;
+        warnings.retain(|warning| warning.contains("looks like"));
+        warnings
+    };
+    assert_eq!(units(&text(30_000.0, 29_000.0, 250.0, 1.0), &[]), [""; 0]);
+    // A speed that contradicts, or that no winch has, confirms nothing; nor does a force of another size.
+    for (text, words) in [
+        (text(20.0, 20.0, 250.0, 1e-3), "lengths are up to"),
+        (text(20.0, 20.0, 2500.0, 1.0), "lengths are up to"),
+        (text(30_000.0, 30.0, 1.0, 1.0), "in `a.force_n` forces are on average"),
+        (text(0.05, 0.05, 1.0, 1.0), "forces are at most"),
+    ] {
+        assert!(units(&text, &[]).iter().any(|warning| warning.contains(words)), "{words}: {:?}", units(&text, &[]));
+    }
+    // An offset says nothing about the unit.
+    let force = |key, name| (key, column(name, 1.0, 30_000.0));
+    let columns = [force("a.force_n", "a.force_n")];
+    assert_eq!(units(&text(300.0, 300.0, 1.0, 1.0), &columns), [""; 0]);
 }
 
 #[test]

@@ -30,7 +30,7 @@ impl ColumnResult {
     }
 }
 
-/// Returns the columns of a log; empty for a log of messages.
+/// Returns the columns of a log that have a name, which a separator at the end of the lines makes without; empty for a log of messages.
 pub fn results(log: &Log, model: Option<&Model>) -> Vec<ColumnResult> {
     let stated = model.map(|model| &model.robot.options().log.columns);
     let column = |name: &String| {
@@ -43,7 +43,7 @@ pub fn results(log: &Log, model: Option<&Model>) -> Vec<ColumnResult> {
             offset: entry.map(|(_, table)| table.offset),
         }
     };
-    log.column_names().unwrap_or_default().iter().map(column).collect()
+    log.column_names().unwrap_or_default().iter().filter(|name| !name.is_empty()).map(column).collect()
 }
 
 /// Returns a table for people.

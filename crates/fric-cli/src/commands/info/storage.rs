@@ -97,10 +97,10 @@ impl StorageResult {
             line("compression:", &format!("{compression}, {sizes} in {count} chunks"));
         }
         // A log that counts from its own beginning has no date.
-        if let Some(start_nanos) = self.start_nanos.filter(|nanos| *nanos >= EARLIEST_DATE_NANOS) {
-            if let Ok(start) = Timestamp::from_nanosecond(start_nanos.into()) {
-                line("start:", &format!("{start:.3}"));
-            }
+        if let Some(start_nanos) = self.start_nanos.filter(|nanos| *nanos >= EARLIEST_DATE_NANOS)
+            && let Ok(start) = Timestamp::from_nanosecond(start_nanos.into())
+        {
+            line("start:", &format!("{start:.3}"));
         }
         if let Some(duration_s) = self.duration_s {
             line("duration:", &format!("{duration_s:.3} s"));

@@ -1,89 +1,85 @@
 //! Guesses the signals of a CSV log's columns from their names and units, in English and German.
 
+use std::cmp::Reverse;
+
 use fric_core::robot::file::{POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
+use fric_log::units::{Head, Quantity, Unit, stated_unit};
 
-use super::draft::{ColumnGuess, Draft, FORCE, LENGTH, is_one};
+use super::draft::{ColumnGuess, Draft, FORCE, LENGTH, Offer, REFERENCE, is_one};
 
-/// The possible content of a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Time,
-    Force,
-    Length,
-    Speed,
+/// What the header and the rows of a log tell of its columns.
+#[derive(Debug, Clone, Copy)]
+pub struct Table<'a> {
+    pub names: &'a [String],
+    /// The units that the log states apart from the names, empty if there are none.
+    pub units: &'a [String],
+    /// Of each column, whether it has dates or times of day.
+    pub dated: &'a [bool],
+    /// Of each column, whether all rows say the same.
+    pub unchanging: &'a [bool],
 }
 
-/// Units in brackets, or after the last underscore.
-const UNITS: [(&str, Kind, f64); 22] = [
-    ("s", Kind::Time, 1.0),
-    ("sec", Kind::Time, 1.0),
-    ("ms", Kind::Time, 1e-3),
-    ("us", Kind::Time, 1e-6),
-    ("µs", Kind::Time, 1e-6),
-    ("ns", Kind::Time, 1e-9),
-    ("n", Kind::Force, 1.0),
-    ("kn", Kind::Force, 1e3),
-    ("mn", Kind::Force, 1e-3),
-    ("kg", Kind::Force, 9.80665),
-    ("kgf", Kind::Force, 9.80665),
-    ("g", Kind::Force, 9.80665e-3),
-    ("lbf", Kind::Force, 4.448_221_615_260_5),
-    ("m", Kind::Length, 1.0),
-    ("cm", Kind::Length, 1e-2),
-    ("mm", Kind::Length, 1e-3),
-    ("µm", Kind::Length, 1e-6),
-    ("um", Kind::Length, 1e-6),
-    ("m/s", Kind::Speed, 1.0),
-    ("mm/s", Kind::Speed, 1e-3),
-    ("m_per_s", Kind::Speed, 1.0),
-    ("mm_per_s", Kind::Speed, 1e-3),
-];
+impl<'a> Table<'a> {
+    fn unit(&self, place: usize) -> &'a str {
+        self.units.get(place).map_or("", String::as_str)
+    }
+
+    fn has_dates(&self, place: usize) -> bool {
+        self.dated.get(place).copied().unwrap_or(false)
+    }
+
+    fn never_changes(&self, place: usize) -> bool {
+        self.unchanging.get(place).copied().unwrap_or(false)
+    }
+}
 
 /// Words in column names that indicate the content if no unit does.
-const WORDS: [(&str, Kind); 34] = [
-    ("time", Kind::Time),
-    ("timestamp", Kind::Time),
-    ("datetime", Kind::Time),
-    ("stamp", Kind::Time),
-    ("zeit", Kind::Time),
-    ("uhrzeit", Kind::Time),
-    ("zeitstempel", Kind::Time),
-    ("t", Kind::Time),
-    ("force", Kind::Force),
-    ("tension", Kind::Force),
-    ("load", Kind::Force),
-    ("effort", Kind::Force),
-    ("kraft", Kind::Force),
-    ("seilkraft", Kind::Force),
-    ("f", Kind::Force),
-    ("fref", Kind::Force),
-    ("fplat", Kind::Force),
-    ("length", Kind::Length),
-    ("len", Kind::Length),
-    ("position", Kind::Length),
-    ("pos", Kind::Length),
-    ("displacement", Kind::Length),
-    ("stroke", Kind::Length),
-    ("encoder", Kind::Length),
-    ("weg", Kind::Length),
-    ("hub", Kind::Length),
-    ("länge", Kind::Length),
-    ("laenge", Kind::Length),
-    ("l", Kind::Length),
-    ("speed", Kind::Speed),
-    ("velocity", Kind::Speed),
-    ("geschwindigkeit", Kind::Speed),
-    ("vel", Kind::Speed),
-    ("v", Kind::Speed),
+const WORDS: [(&str, Quantity); 34] = [
+    ("time", Quantity::Time),
+    ("timestamp", Quantity::Time),
+    ("datetime", Quantity::Time),
+    ("stamp", Quantity::Time),
+    ("zeit", Quantity::Time),
+    ("uhrzeit", Quantity::Time),
+    ("zeitstempel", Quantity::Time),
+    ("t", Quantity::Time),
+    ("force", Quantity::Force),
+    ("tension", Quantity::Force),
+    ("load", Quantity::Force),
+    ("effort", Quantity::Force),
+    ("kraft", Quantity::Force),
+    ("seilkraft", Quantity::Force),
+    ("f", Quantity::Force),
+    ("fref", Quantity::Force),
+    ("fplat", Quantity::Force),
+    ("length", Quantity::Length),
+    ("len", Quantity::Length),
+    ("position", Quantity::Length),
+    ("pos", Quantity::Length),
+    ("displacement", Quantity::Length),
+    ("stroke", Quantity::Length),
+    ("encoder", Quantity::Length),
+    ("weg", Quantity::Length),
+    ("hub", Quantity::Length),
+    ("länge", Quantity::Length),
+    ("laenge", Quantity::Length),
+    ("l", Quantity::Length),
+    ("speed", Quantity::Speed),
+    ("velocity", Quantity::Speed),
+    ("geschwindigkeit", Quantity::Speed),
+    ("vel", Quantity::Speed),
+    ("v", Quantity::Speed),
 ];
 /// Words that mark a force at the platform.
 const REFERENCE_WORDS: [&str; 8] =
     ["ref", "reference", "referenz", "platform", "plattform", "payload", "fref", "fplat"];
 /// Words that name no cable.
-const OTHER_WORDS: [&str; 20] = [
-    "cable", "seil", "winch", "winde", "motor", "cell", "zelle", "sensor", "ist", "actual", "measured", "gemessen",
-    "raw", "filtered", "of", "the", "des", "der", "at", "in",
+const OTHER_WORDS: [&str; 16] = [
+    "cable", "seil", "winch", "winde", "motor", "cell", "zelle", "sensor", "raw", "filtered", "of", "the", "des",
+    "der", "at", "in",
 ];
+/// Words that mark what was measured, not commanded or computed.
+const MEASURED_WORDS: [&str; 4] = ["ist", "actual", "measured", "gemessen"];
 /// Words beside the axis of a column of the pose.
 const POSE_WORDS: [&str; 13] = [
     "pose",
@@ -104,44 +100,143 @@ const ORIENTATION_WORDS: [&str; 8] = ["q", "quat", "quaternion", "orientation", 
 /// Words that mark what was commanded, not measured, and beginnings of such words.
 const COMMAND_WORDS: [&str; 8] = ["set", "setpoint", "target", "command", "commanded", "cmd", "desired", "demand"];
 const COMMAND_BEGINNING: &str = "soll";
-/// Units of what is none of the signals.
-const OTHER_UNITS: [&str; 26] = [
-    "nm", "ncm", "rev", "rpm", "1/min", "u/min", "deg", "°", "rad", "deg/s", "°/s", "rad/s", "v", "mv", "mv/v", "a",
-    "ma", "w", "°c", "k", "%", "hz", "bar", "pa", "counts", "inc",
-];
+/// Words of a place on the earth, which is no length of a cable.
+const GEOGRAPHIC_WORDS: [&str; 8] = ["latitude", "longitude", "altitude", "lat", "lon", "alt", "east", "north"];
+/// Words of what goes with the force where no sensor shows it.
+const DRIVE_WORDS: [&str; 8] =
+    ["torque", "tau", "moment", "drehmoment", "current", "strom", "motorstrom", "motormoment"];
 
-/// Guesses the signals of columns with these names and, if the log states them apart from the names, units.
-pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
-    let has = |name: &str| names.iter().any(|known| known == name);
-    let unit_of = |place: usize| units.get(place).map_or("", String::as_str);
-    let mut unknown = Vec::new();
-    let (mut found, positions) = pose(names, &unit_of, draft);
-    let are_labels = has_labels(names, &unit_of);
-    for (place, name) in names.iter().enumerate() {
+/// A column that may be a signal.
+struct Candidate {
+    place: usize,
+    guess: ColumnGuess,
+}
+
+/// Guesses the signals of the columns of a log.
+pub fn guess(table: &Table<'_>, draft: &mut Draft) {
+    let Table { names, .. } = *table;
+    let (mut found, positions) = pose(table, draft);
+    let (candidates, unknown) = candidates(table, &positions);
+    let mut keys: Vec<&str> = Vec::new();
+    for Candidate { guess, .. } in &candidates {
+        if !keys.contains(&guess.key.as_str()) && !found.iter().any(|known| known.key == guess.key) {
+            keys.push(&guess.key);
+        }
+    }
+    // Forces come first, because the other signals go with them.
+    keys.sort_by_key(|key| !key.ends_with(FORCE));
+    let mut chosen: Vec<&Candidate> = Vec::new();
+    for key in keys {
+        let cable = key.rsplit_once('.').map_or("", |(cable, _)| cable);
+        let force = chosen.iter().find(|one| one.guess.key == format!("{cable}{FORCE}"));
+        let force_words = force.map_or_else(Vec::new, |force| telling_words(&force.guess.column));
+        let mut of_key: Vec<&Candidate> = candidates.iter().filter(|one| one.guess.key == key).collect();
+        if key.ends_with(LENGTH) {
+            // One that is called so by its key is meant, whatever it shows.
+            let is_still = |one: &&Candidate| table.never_changes(one.place) && one.guess.column != key;
+            for Candidate { guess, .. } in of_key.iter().copied().filter(is_still) {
+                draft.notes.push(format!("{key}: column {:?} never changes, and so is no length", guess.column));
+            }
+            of_key.retain(|one| !is_still(one));
+        }
+        of_key.sort_by_key(|one| {
+            let words = telling_words(&one.guess.column);
+            Reverse(words.iter().filter(|word| force_words.contains(word)).count())
+        });
+        let mut of_key = of_key.into_iter();
+        chosen.extend(of_key.next());
+        let reference = format!("{cable}{REFERENCE}");
+        let is_free = key.ends_with(FORCE) && !candidates.iter().any(|one| one.guess.key == reference);
+        for Candidate { guess, .. } in of_key {
+            if is_free && !draft.offers.iter().any(|offer| offer.guess.key == reference) {
+                let guess = ColumnGuess { key: reference.clone(), ..guess.clone() };
+                draft.offers.push(Offer {
+                    guess,
+                    condition: "if this is the force at the platform; if it is the other one, exchange them",
+                });
+            } else {
+                draft.notes.push(format!("{key}: column {:?} could be meant too", guess.column));
+            }
+        }
+    }
+    chosen.sort_by_key(|one| one.place);
+    for Candidate { place, guess } in chosen {
+        if let Some(unit) = unknown_unit(&guess.column, table.unit(*place)).filter(|_| !table.has_dates(*place)) {
+            let ColumnGuess { key, column, .. } = guess;
+            draft.notes.push(format!(
+                "{key}: the unit {unit:?} of column {column:?} is not known; state its `factor` to that of the key"
+            ));
+        }
+        found.push(guess.clone());
+    }
+    add_cables(&found, draft);
+    offer_drives(table, &unknown, draft);
+    let has_references = found.iter().any(|guess| guess.key.ends_with(REFERENCE));
+    match draft.offers.iter().find(|offer| offer.guess.key.ends_with(REFERENCE)) {
+        Some(Offer { guess: ColumnGuess { key, column, .. }, .. }) => draft.notes.push(format!(
+            "{key}: column {column:?} is a second force; if it is that at the platform, remove the `# ?` in front of it"
+        )),
+        None if !has_references => draft.notes.push(
+            "reference: no column looks like a force at the platform; name it under [log.columns] as NAME.reference_n, or a \
+             known load under [log], such as reference = { constant_n = 49.05 } or reference = { hanging_mass_kg = 5.0 }"
+                .to_owned(),
+        ),
+        None => {}
+    }
+    let has_pose_column = names.iter().any(|name| name == POSE_COLUMNS[0]);
+    draft.has_pose = has_pose_column || found.iter().any(|guess| guess.key == POSE_COLUMNS[0]);
+    if !draft.has_pose && positions.is_empty() {
+        draft.notes.push("pose: no columns pose.x_m to pose.qw; a bench needs none".to_owned());
+    }
+    if !unknown.is_empty() {
+        let unknown: Vec<&str> = unknown.iter().filter_map(|place| names.get(*place)).map(String::as_str).collect();
+        draft.notes.push(format!("not used: {}", unknown.join(", ")));
+    }
+    // A reference of a cable without a force is dropped.
+    found.retain(|guess| {
+        let is_of_cable = || draft.cables.iter().any(|cable| guess.key.starts_with(&format!("{cable}.")));
+        guess.key == TIME_COLUMN || POSE_COLUMNS.contains(&guess.key.as_str()) || is_of_cable()
+    });
+    found.retain(|guess| guess.key != guess.column || !is_one(guess.factor));
+    draft.columns = found;
+}
+
+/// Returns the columns that may be signals, and the places of those that are none. `positions` are of a pose.
+fn candidates(table: &Table<'_>, positions: &[usize]) -> (Vec<Candidate>, Vec<usize>) {
+    let (mut candidates, mut unknown) = (Vec::new(), Vec::new());
+    let are_labels = has_labels(table);
+    for (place, name) in table.names.iter().enumerate() {
         let is_of_pose = POSE_COLUMNS.contains(&name.as_str()) || positions.contains(&place);
         if is_of_pose || WRENCH_COLUMNS.contains(&name.as_str()) {
             continue;
         }
-        let Some((key, factor)) = signal(name, unit_of(place)) else {
-            unknown.push(name.clone());
+        let unit = table.unit(place);
+        let Some((key, factor)) = signal(name, unit) else {
+            // A separator at the end of the lines makes a column without a name.
+            if !name.is_empty() {
+                unknown.push(place);
+            }
             continue;
         };
         let key = match label(name).filter(|_| are_labels) {
             Some(label) => key.replacen("cable1.", &format!("{label}."), 1),
             None => key,
         };
-        if found.iter().any(|guess| guess.key == key) {
-            draft.notes.push(format!("{key}: column {name:?} could be meant too"));
-            continue;
-        }
-        let states_unit = name.contains(['[', '(']) || units.get(place).is_some_and(|unit| !unit.is_empty());
-        found.push(ColumnGuess { key, column: name.clone(), factor, states_unit });
+        // A date says by itself what it is.
+        let is_date = key == TIME_COLUMN && table.has_dates(place);
+        let factor = if is_date { 1.0 } else { factor };
+        let states_unit = is_date || Head::of(name).unit.is_some() || stated_unit(unit).is_some();
+        candidates.push(Candidate { place, guess: ColumnGuess { key, column: name.clone(), factor, states_unit } });
     }
-    let quantity = |guess: &ColumnGuess, quantity: &str| {
-        guess.key.rsplit_once('.').filter(|(_, of)| *of == quantity).map(|(cable, _)| cable.to_owned())
+    (candidates, unknown)
+}
+
+/// Adds the cables of the signals found, and notes what they lack.
+fn add_cables(found: &[ColumnGuess], draft: &mut Draft) {
+    let cables_with = |end: &str| -> Vec<String> {
+        found.iter().filter_map(|guess| guess.key.strip_suffix(end)).map(ToOwned::to_owned).collect()
     };
-    let cables_with = |of: &str| -> Vec<String> { found.iter().filter_map(|guess| quantity(guess, of)).collect() };
-    let (forces, lengths) = (cables_with("force_n"), cables_with("length_m"));
+    let (forces, lengths) = (cables_with(FORCE), cables_with(LENGTH));
     for cable in forces.iter().chain(&lengths) {
         if !draft.cables.contains(cable) {
             draft.cables.push(cable.clone());
@@ -169,37 +264,39 @@ pub fn guess(names: &[String], units: &[String], draft: &mut Draft) {
              and remove this cable"
         ));
     }
-    if cables_with("reference_n").is_empty() {
-        draft.notes.push(
-            "reference: no column looks like a force at the platform; name it under [log.columns] as NAME.reference_n, or a \
-             known load under [log], such as reference = { constant_n = 49.05 }"
-                .to_owned(),
-        );
+}
+
+/// Offers torques and currents for the forces that are missing, those that are measured first.
+fn offer_drives(table: &Table<'_>, unknown: &[usize], draft: &mut Draft) {
+    let mut drives: Vec<(&String, Vec<String>)> = unknown
+        .iter()
+        .filter(|place| !table.never_changes(**place))
+        .filter_map(|place| table.names.get(*place))
+        .map(|name| (name, words_of(name)))
+        .filter(|(_, words)| words.iter().any(|word| DRIVE_WORDS.contains(&word.as_str())) && !is_command(words))
+        .collect();
+    drives.sort_by_key(|(_, words)| !words.iter().any(|word| MEASURED_WORDS.contains(&word.as_str())));
+    for (name, words) in drives {
+        let key = format!("{}{FORCE}", numbered_cable(&words));
+        if draft.missing.contains(&key) && !draft.offers.iter().any(|offer| offer.guess.key == key) {
+            let guess = ColumnGuess { key, column: name.clone(), factor: 1.0, states_unit: true };
+            draft.offers.push(Offer {
+                guess,
+                condition: "with a `factor` to newtons: of a torque 1 over the radius of the drum in m",
+            });
+        }
     }
-    draft.has_pose = has(POSE_COLUMNS[0]) || found.iter().any(|guess| guess.key == POSE_COLUMNS[0]);
-    if !draft.has_pose && positions.is_empty() {
-        draft.notes.push("pose: no columns pose.x_m to pose.qw; a bench needs none".to_owned());
-    }
-    if !unknown.is_empty() {
-        draft.notes.push(format!("not used: {}", unknown.join(", ")));
-    }
-    // A reference of a cable without a force is dropped.
-    found.retain(|guess| {
-        let is_of_cable = || draft.cables.iter().any(|cable| guess.key.starts_with(&format!("{cable}.")));
-        guess.key == TIME_COLUMN || POSE_COLUMNS.contains(&guess.key.as_str()) || is_of_cable()
-    });
-    found.retain(|guess| guess.key != guess.column || !is_one(guess.factor));
-    draft.columns = found;
 }
 
 /// Returns the columns of a pose with other names, and the places of all that belong to it.
-fn pose<'a>(names: &[String], unit_of: &dyn Fn(usize) -> &'a str, draft: &mut Draft) -> (Vec<ColumnGuess>, Vec<usize>) {
+fn pose(table: &Table<'_>, draft: &mut Draft) -> (Vec<ColumnGuess>, Vec<usize>) {
     let mut found: Vec<(usize, ColumnGuess)> = Vec::new();
-    for (place, name) in names.iter().enumerate() {
-        if let Some((key, factor)) = of_pose(name, unit_of(place))
+    for (place, name) in table.names.iter().enumerate() {
+        let unit = table.unit(place);
+        if let Some((key, factor)) = of_pose(name, unit)
             && !found.iter().any(|(_, guess)| guess.key == key)
         {
-            let states_unit = name.contains(['[', '(']) || !unit_of(place).is_empty();
+            let states_unit = Head::of(name).unit.is_some() || stated_unit(unit).is_some();
             found.push((place, ColumnGuess { key, column: name.clone(), factor, states_unit }));
         }
     }
@@ -220,11 +317,8 @@ fn pose<'a>(names: &[String], unit_of: &dyn Fn(usize) -> &'a str, draft: &mut Dr
 }
 
 /// Returns the key of a column of a pose, and the factor to its unit.
-fn of_pose(name: &str, stated_unit: &str) -> Option<(String, f64)> {
-    let lower = name.to_lowercase();
-    let stated_unit = stated_unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
-    let (words, unit) = parts(&lower);
-    let unit = unit.or_else(|| Some(stated_unit.as_str()).filter(|unit| !unit.is_empty()));
+fn of_pose(name: &str, unit: &str) -> Option<(String, f64)> {
+    let (words, unit) = (words_of(name), Head::of(name).unit.or(stated_unit(unit)));
     let (last, beside) = words.split_last()?;
     let (is_turn, axis) = match last.as_bytes() {
         [axis @ (b'x'..=b'z' | b'w')] => (beside.iter().any(|word| ORIENTATION_WORDS.contains(&word.as_str())), *axis),
@@ -238,18 +332,20 @@ fn of_pose(name: &str, stated_unit: &str) -> Option<(String, f64)> {
     let place = if is_turn { place + 3 } else { place };
     let factor = match unit {
         None => 1.0,
-        Some(unit) if !is_turn => UNITS.iter().find(|(of, kind, _)| *of == unit && *kind == Kind::Length)?.2,
-        Some(unit) => Some(1.0).filter(|_| ["1", "-", ""].contains(&unit))?,
+        Some(unit) => match Unit::of(unit) {
+            Some(Unit::Of(Quantity::Length, factor)) if !is_turn => factor,
+            _ => Some(1.0).filter(|_| is_turn && stated_unit(unit).is_none())?,
+        },
     };
     let key = POSE_COLUMNS.get(place).filter(|_| (is_turn || axis != b'w') && beside.iter().all(is_plain))?;
     Some(((*key).to_owned(), factor))
 }
 
 /// Whether the columns tell the cables apart by a word in place of a number: each word stands once at a force and once at a length.
-fn has_labels<'a>(names: &[String], unit_of: &dyn Fn(usize) -> &'a str) -> bool {
+fn has_labels(table: &Table<'_>) -> bool {
     let labels = |end: &str| -> Vec<Option<String>> {
-        let of_kind = names.iter().enumerate().filter(|(place, name)| {
-            signal(name, unit_of(*place)).is_some_and(|(key, _)| key == format!("cable1{end}"))
+        let of_kind = table.names.iter().enumerate().filter(|(place, name)| {
+            signal(name, table.unit(*place)).is_some_and(|(key, _)| key == format!("cable1{end}"))
         });
         let mut labels: Vec<Option<String>> = of_kind.map(|(_, name)| label(name)).collect();
         labels.sort();
@@ -262,13 +358,8 @@ fn has_labels<'a>(names: &[String], unit_of: &dyn Fn(usize) -> &'a str) -> bool 
 
 /// Returns the words of a column's name that say neither what it is nor its number.
 fn label(name: &str) -> Option<String> {
-    let lower = name.to_lowercase();
-    let (words, _) = parts(&lower);
-    let is_known = |word: &&String| {
-        WORDS.iter().any(|(of, _)| of == word)
-            || REFERENCE_WORDS.contains(&word.as_str())
-            || OTHER_WORDS.contains(&word.as_str())
-    };
+    let words = words_of(name);
+    let is_known = |word: &&String| says_quantity(word) || OTHER_WORDS.contains(&word.as_str());
     if words.iter().any(|word| word.bytes().all(|byte| byte.is_ascii_digit())) {
         return None;
     }
@@ -276,66 +367,90 @@ fn label(name: &str) -> Option<String> {
     (!rest.is_empty()).then(|| rest.join("_"))
 }
 
+/// Whether a word says what a column is, and not of which cable.
+fn says_quantity(word: &str) -> bool {
+    WORDS.iter().any(|(of, _)| *of == word) || REFERENCE_WORDS.contains(&word) || MEASURED_WORDS.contains(&word)
+}
+
+/// Returns the words by which columns of one cable are known as such.
+fn telling_words(name: &str) -> Vec<String> {
+    let mut words = words_of(name);
+    words.retain(|word| !says_quantity(word) && !word.bytes().all(|byte| byte.is_ascii_digit()));
+    words
+}
+
+fn is_command(words: &[String]) -> bool {
+    words.iter().any(|word| COMMAND_WORDS.contains(&word.as_str()) || word.starts_with(COMMAND_BEGINNING))
+}
+
+/// Returns the cable of a column by the last number among its words.
+fn numbered_cable(words: &[String]) -> String {
+    let number = words.iter().rev().find(|word| word.bytes().all(|byte| byte.is_ascii_digit()));
+    format!("cable{}", number.map_or("1", String::as_str))
+}
+
 /// Returns the probable signal of a column, and the factor to its unit, which the name or the line of units states. One with a unit of something else is
 /// none.
-fn signal(name: &str, stated_unit: &str) -> Option<(String, f64)> {
+fn signal(name: &str, unit: &str) -> Option<(String, f64)> {
     if name == TIME_COLUMN {
         return Some((name.to_owned(), 1.0));
     }
-    let stated_unit = stated_unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
     if let Some((cable, quantity)) = name.rsplit_once('.')
         && ["force_n", "length_m", "speed_m_per_s", "reference_n"].contains(&quantity)
         && !cable.is_empty()
     {
         // The name has a unit of its own, which the line of units may contradict.
-        let factor = UNITS.iter().find(|(of, ..)| *of == stated_unit).map_or(1.0, |(_, _, factor)| *factor);
+        let factor = match stated_unit(unit).and_then(Unit::of) {
+            Some(Unit::Of(_, factor)) => factor,
+            _ => 1.0,
+        };
         return Some((name.to_owned(), factor));
     }
-    let lower = name.to_lowercase();
-    let (words, unit) = parts(&lower);
-    let unit = unit.or_else(|| Some(stated_unit.as_str()).filter(|unit| !unit.is_empty()));
-    let is_of_command = |word: &String| COMMAND_WORDS.contains(&word.as_str()) || word.starts_with(COMMAND_BEGINNING);
-    if words.iter().any(is_of_command) || unit.is_some_and(|unit| OTHER_UNITS.contains(&unit)) {
+    let words = words_of(name);
+    if is_command(&words) || words.iter().any(|word| GEOGRAPHIC_WORDS.contains(&word.as_str())) {
         return None;
     }
-    let by_word = || words.iter().find_map(|word| WORDS.iter().find(|(of, _)| of == word));
-    let by_unit = unit.and_then(|unit| UNITS.iter().find(|(of, ..)| *of == unit));
-    let (kind, factor) = match by_unit {
-        Some((_, kind, factor)) => (*kind, *factor),
-        None => (by_word()?.1, 1.0),
+    let by_word = words.iter().find_map(|word| WORDS.iter().find(|(of, _)| of == word)).map(|(_, quantity)| *quantity);
+    let by_unit = Head::of(name).unit.or(stated_unit(unit)).and_then(Unit::of);
+    let (quantity, factor) = match by_unit {
+        Some(Unit::Other) => return None,
+        // The symbol of time, as in `Zeit [t]`, is no tonne.
+        Some(Unit::Of(quantity, factor)) if (quantity, by_word) != (Quantity::Force, Some(Quantity::Time)) => {
+            (quantity, factor)
+        }
+        _ => (by_word?, 1.0),
     };
-    let number = words.iter().rev().find(|word| word.bytes().all(|byte| byte.is_ascii_digit()));
-    let cable = format!("cable{}", number.map_or("1", String::as_str));
+    let cable = numbered_cable(&words);
     let is_reference = words.iter().any(|word| REFERENCE_WORDS.contains(&word.as_str()));
-    let key = match kind {
-        Kind::Time => TIME_COLUMN.to_owned(),
-        Kind::Force if is_reference => format!("{cable}.reference_n"),
-        Kind::Force => format!("{cable}.force_n"),
-        Kind::Length => format!("{cable}.length_m"),
-        Kind::Speed => format!("{cable}.speed_m_per_s"),
+    let key = match quantity {
+        Quantity::Time => TIME_COLUMN.to_owned(),
+        Quantity::Force if is_reference => format!("{cable}{REFERENCE}"),
+        Quantity::Force => format!("{cable}{FORCE}"),
+        Quantity::Length => format!("{cable}{LENGTH}"),
+        Quantity::Speed => format!("{cable}.speed_m_per_s"),
     };
     Some((key, factor))
 }
 
-/// Returns the words of a name, with numbers separate, and its unit: in brackets, or after an underscore.
-fn parts(name: &str) -> (Vec<String>, Option<&str>) {
-    let brackets = name.find(['[', '(']).and_then(|open| {
-        let inside = name.get(open + 1..)?.split([']', ')']).next()?;
-        Some((name.get(..open)?, inside.trim()))
-    });
-    let suffix = || {
-        let fits =
-            |(unit, ..): &&(&'static str, Kind, f64)| name.strip_suffix(unit).is_some_and(|rest| rest.ends_with('_'));
-        let (unit, ..) = UNITS.iter().filter(fits).max_by_key(|(unit, ..)| unit.len())?;
-        Some((name.strip_suffix(unit)?, *unit))
+/// Returns what stands in place of a unit of a column and is not known as one; `None` if it is a word or a number, as in `Force (filtered) [1]`.
+fn unknown_unit<'a>(name: &'a str, unit: &'a str) -> Option<&'a str> {
+    let unit = Head::of(name).unit.or(stated_unit(unit)).filter(|unit| Unit::of(unit).is_none())?;
+    let is_plain = |word: &String| {
+        says_quantity(word) || OTHER_WORDS.contains(&word.as_str()) || word.bytes().all(|byte| byte.is_ascii_digit())
     };
-    let (words, unit) = match brackets.or_else(suffix) {
-        Some((words, unit)) => (words, Some(unit)),
-        None => (name, None),
-    };
+    Some(unit).filter(|unit| !split_words(unit).iter().all(is_plain))
+}
+
+/// Returns the words of a column's name without its unit, numbers separate.
+fn words_of(name: &str) -> Vec<String> {
+    split_words(Head::of(name).name)
+}
+
+/// Returns the words of a text in lower case, numbers separate.
+fn split_words(text: &str) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     let mut last = None;
-    for character in words.chars() {
+    for character in text.to_lowercase().chars() {
         let class = (character.is_alphabetic(), character.is_ascii_digit());
         if class != (false, false) {
             match found.last_mut().filter(|_| last == Some(class)) {
@@ -345,7 +460,7 @@ fn parts(name: &str) -> (Vec<String>, Option<&str>) {
         }
         last = Some(class);
     }
-    (found, unit)
+    found
 }
 
 #[cfg(test)]
@@ -368,11 +483,20 @@ mod tests {
             ("Force (filtered) 1", "cable1.force_n", 1.0),
             ("Kraft des Seils 2 [N]", "cable2.force_n", 1.0),
             ("Zeit [hh:mm:ss]", "time_s", 1.0),
+            ("Zeit [t]", "time_s", 1.0),
+            ("ms", "time_s", 1e-3),
+            ("Last [MN]", "cable1.force_n", 1e6),
+            ("F [mN]", "cable1.force_n", 1e-3),
+            ("Seilkraft [daN]", "cable1.force_n", 10.0),
+            ("Kran [t]", "cable1.force_n", 9806.65),
+            ("F_Winde/kN", "cable1.force_n", 1e3),
+            ("l/mm", "cable1.length_m", 1e-3),
+            ("v/(mm/s)", "cable1.speed_m_per_s", 1e-3),
         ] {
             assert_eq!(signal(name, ""), Some((key.to_owned(), factor)), "{name}");
         }
-        for name in ["note", "temperature [°C]", "Position [rev]", "load torque [Nm]", "F_soll", "target speed [m/s]"]
-        {
+        let others = ["note", "temperature [°C]", "Position [rev]", "load torque [Nm]", "F_soll", "target speed [m/s]"];
+        for name in others.into_iter().chain(["ground_pos_latitude", "M/Nm"]) {
             assert_eq!(signal(name, ""), None, "{name}");
         }
     }
@@ -380,7 +504,7 @@ mod tests {
     fn drafted(names: &[&str]) -> Draft {
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
         let mut draft = Draft::new("log".to_owned());
-        guess(&names, &[], &mut draft);
+        guess(&Table { names: &names, units: &[], dated: &[], unchanging: &[] }, &mut draft);
         draft
     }
 
@@ -420,6 +544,39 @@ mod tests {
         assert!(draft.notes.iter().any(|note| note.contains("needs a quaternion")), "{draft:?}");
         // One axis is the way of a bench.
         assert!(has(&drafted(&["time_s", "F", "x [m]"]), "cable1.length_m", "x [m]", 1.0));
+    }
+
+    #[test]
+    fn a_unit_that_is_not_known_is_told() {
+        let told = |name: &str| {
+            drafted(&["t", name]).notes.iter().any(|note| note.contains("is not known; state its `factor`"))
+        };
+        assert!(told("Kraft [xy]") && told("F (Skt)"));
+        assert!(["Kraft [kN]", "Force (filtered)", "F [1]", "Kraft"].iter().all(|name| !told(name)));
+    }
+
+    /// The speed of the wind is none of the winch.
+    #[test]
+    fn of_several_columns_that_is_taken_which_shares_words_with_the_force() {
+        let names =
+            ["time", "ground_wind_velocity", "kite_pos", "ground_tether_speed", "ground_tether_force", "tether_pos"];
+        let draft = drafted(&names);
+        assert!(has(&draft, "cable1.speed_m_per_s", "ground_tether_speed", 1.0), "{draft:?}");
+        assert!(has(&draft, "cable1.length_m", "tether_pos", 1.0), "{draft:?}");
+    }
+
+    #[test]
+    fn a_second_force_and_a_torque_are_offered() {
+        let offered = |names: &[&str]| -> Vec<(String, String)> {
+            drafted(names).offers.into_iter().map(|offer| (offer.guess.key, offer.guess.column)).collect()
+        };
+        let pair = |key: &str, column: &str| vec![(key.to_owned(), column.to_owned())];
+        let forces = ["t [s]", "F Winde [kN]", "F Haken [kN]", "l [mm]"];
+        assert_eq!(offered(&forces), pair("cable1.reference_n", "F Haken [kN]"));
+        assert_eq!(offered(&["t [s]", "F Winde [kN]", "Fref [kN]", "l [mm]"]), []);
+        let drive = ["time", "joint_pos", "tau_rigid", "tau_measured", "current"];
+        assert_eq!(offered(&drive), pair("cable1.force_n", "tau_measured"));
+        assert_eq!(offered(&["time", "joint_pos", "effort", "torque"]), []);
     }
 
     #[test]

@@ -15,6 +15,7 @@ const USUAL_FORCE_N: f64 = 10.0;
 /// Ends of the keys of a cable's signals.
 pub const FORCE: &str = ".force_n";
 pub const LENGTH: &str = ".length_m";
+pub const REFERENCE: &str = ".reference_n";
 
 /// A column of a CSV log and its probable signal.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +26,23 @@ pub struct ColumnGuess {
     pub factor: f64,
     /// Whether the header states its unit beside the name.
     pub states_unit: bool,
+}
+
+impl ColumnGuess {
+    /// Returns its line under `[log.columns]`.
+    fn entry(&self) -> String {
+        let Self { key, column, factor, .. } = self;
+        let factor = if is_one(*factor) { String::new() } else { format!(", factor = {factor:?}") };
+        format!("{key:?} = {{ column = {column:?}{factor} }}")
+    }
+}
+
+/// A column that may be a signal, as a comment beside the columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Offer {
+    pub guess: ColumnGuess,
+    /// When to take it.
+    pub condition: &'static str,
 }
 
 /// The known content so far.
@@ -39,6 +57,7 @@ pub struct Draft {
     /// Keys and values under `[log]`.
     pub paths: Vec<(&'static str, String)>,
     pub columns: Vec<ColumnGuess>,
+    pub offers: Vec<Offer>,
     /// Keys of the forces and lengths without a column.
     pub missing: Vec<String>,
     pub has_pose: bool,
@@ -57,6 +76,7 @@ impl Draft {
             cables: Vec::new(),
             paths: Vec::new(),
             columns: Vec::new(),
+            offers: Vec::new(),
             missing: Vec::new(),
             has_pose: false,
             notes: Vec::new(),
@@ -128,7 +148,7 @@ impl Draft {
 
     /// Returns the robot file.
     pub fn text(&self) -> String {
-        let Self { name, interval_s, sigma_n_per_m, cables, paths, columns, has_pose, notes, .. } = self;
+        let Self { name, interval_s, sigma_n_per_m, cables, paths, columns, offers, has_pose, notes, .. } = self;
         let mut text = String::from(
             "# A robot file to start from, made of a log. What is marked with `?` is to be checked on the machine.\n",
         );
@@ -150,11 +170,13 @@ impl Draft {
             }
             text += "\n";
         }
-        if !columns.is_empty() {
+        if !columns.is_empty() || !offers.is_empty() {
             text += "[log.columns]\n";
-            for ColumnGuess { key, column, factor, .. } in columns {
-                let factor = if is_one(*factor) { String::new() } else { format!(", factor = {factor:?}") };
-                let _ = writeln!(text, "{key:?} = {{ column = {column:?}{factor} }}");
+            for guess in columns {
+                let _ = writeln!(text, "{}", guess.entry());
+            }
+            for Offer { guess, condition } in offers {
+                let _ = writeln!(text, "# ? {} # {condition}", guess.entry());
             }
             text += "\n";
         }

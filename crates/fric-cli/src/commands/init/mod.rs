@@ -17,6 +17,7 @@ use fric_log::{CsvError, GREAT_INTERVAL_S};
 use crate::arguments::InitArguments;
 use crate::failure::{Failure, Outcome};
 use crate::output::{self, Written};
+use columns::Table;
 use draft::Draft;
 
 /// Greatest cycle time of a robot file, s.
@@ -35,7 +36,11 @@ pub fn run(arguments: &InitArguments) -> Outcome {
     let first = logs.first().and_then(|path| path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
     let mut draft = Draft::new(first.unwrap_or_default());
     match log.column_names() {
-        Some(names) => columns::guess(names, log.column_units(), &mut draft),
+        Some(names) => {
+            let (dated, unchanging) = (log.dated_columns(), log.unchanging_columns()?);
+            let table = Table { names, units: log.column_units(), dated: &dated, unchanging: &unchanging };
+            columns::guess(&table, &mut draft);
+        }
         None => topics::guess(&mut log, &mut draft)?,
     }
     look_at_beginning(logs, &mut draft, log.column_names().is_some())?;

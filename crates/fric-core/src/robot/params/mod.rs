@@ -14,6 +14,7 @@ use crate::effects::time_delay::{self, delay_range_s};
 use crate::robot::error::{ParamError, ParamProblem, check};
 use crate::robot::known_reference::KnownReference;
 use crate::signals::SignalLimits;
+use crate::signals::doubt::Trust;
 
 pub use cable::CableParams;
 pub(crate) use cable::{Geometry, Wrap};
@@ -191,6 +192,14 @@ impl<'a> RobotParams<'a> {
         let monitor = MonitorOptions { length_noise_m, ..self.monitor };
         check_length_noise(&monitor)?;
         Ok(Self { monitor, ..self })
+    }
+
+    /// Returns of each cable the change of its sensor force in a cycle beyond which the sensor has jumped, N, besides 5 % of the force + 0.1 N at the
+    /// platform ([`MonitorOptions::sensor_jump_n`]); beyond all forces where nothing counts as a jump.
+    pub fn sensor_jumps_n(&self) -> impl Iterator<Item = f64> + 'a {
+        let (monitor, cycle_s) = (self.monitor, self.cycle_s);
+        let trust = move |cable| Trust::new(cable, monitor.sensor_jump_n, monitor.length_jump_m, cycle_s);
+        self.cables.iter().map(move |cable| trust(cable).sensor_jump_n)
     }
 
     /// Returns the cable forces at the platform that are known rather than measured.
