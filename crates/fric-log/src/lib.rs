@@ -4,7 +4,7 @@
 //! file names, each at its own rate, into one [`Sample`](fric_core::Sample) per cycle. Damaged and unfinished files are read as far as they go, and
 //! what was lost becomes a warning. Memory is bounded whatever a file claims.
 //!
-//! [`recording`] reads MCAP, [`schema`] the message formats (CDR with ros2msg, JSON, protobuf), [`path`] the paths to fields in messages. [`write`]
+//! [`recording`] reads MCAP, [`schema`] the message formats (CDR with ros2msg, JSON, protobuf), [`path`] the paths to fields in messages. [`mod@write`]
 //! writes MCAP, [`table`] reads and writes tables of numbers, [`robot`] finds the robot file attached to a log, and [`output`] replaces files only
 //! when they are complete.
 //!
