@@ -39,7 +39,9 @@ fn a_known_load_is_the_reference_of_every_command() {
         let cable = &place.json("fit.json")["cables"][0];
         let mu = cable["parameters"]["mu"].as_f64().unwrap();
         assert!((mu - 0.02).abs() < 0.0005, "{reference}: {cable}");
-        assert!(cable["after"]["rms_n"].as_f64().unwrap() < 0.05, "{cable}");
+        // What is left is mostly the friction that was stored when the log began.
+        let [before_n, after_n] = ["before", "after"].map(|when| cable[when]["rms_n"].as_f64().unwrap());
+        assert!(after_n < 0.05 * before_n, "{cable}");
         assert!(String::from_utf8(place.read("fitted.toml")).unwrap().contains(reference));
     }
 }
@@ -131,7 +133,7 @@ fn motion_one_way_leaves_the_zero_as_given() {
          friction = {{ mu = 0.01, sigma_n_per_m = 100.0, viscous_n_s_per_m = 0.0 }}\n"
     );
     place.write("robot.toml", robot);
-    // A motor that reels in at several speeds: 0.7 N of friction and 0.6 N s/m, with a ripple in place of noise.
+    // A motor that reels in at several speeds: 0.7 N of friction and 0.6 N s/m, with a ripple in place of noise. A pulley of 180° bears twice the mean force.
     let mut logs = Vec::new();
     for (name, speed_m_per_s) in [("a", 0.1), ("b", 0.5), ("c", 1.0), ("d", 1.5)] {
         let row = |cycle: i32| {
@@ -148,7 +150,10 @@ fn motion_one_way_leaves_the_zero_as_given() {
     let run = place.run(&fit);
     let cable = &place.json("fit.json")["cables"][0];
     let value = |key: &str| cable["parameters"][key].as_f64().unwrap();
-    assert!((value("mu") - 0.07).abs() < 0.01 && (value("viscous_n_s_per_m") - 0.6).abs() < 0.1, "{cable}");
+    assert!(
+        (value("mu") - 0.7 / (2.0 * 10.35)).abs() < 0.002 && (value("viscous_n_s_per_m") - 0.6).abs() < 0.1,
+        "{cable}"
+    );
     assert_eq!((value("offset_n"), cable["undetermined"][0].as_str()), (0.0, Some("offset_n")), "{cable}");
     let told = unwrapped(&run.stdout);
     assert!(told.contains("does not determine ε (offset_n) of w") && told.contains("in both directions"), "{told}");

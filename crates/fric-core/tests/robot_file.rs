@@ -197,7 +197,7 @@ fn bad_files() -> Vec<Bad> {
         bad("sensor = true", "senser = true", 22, &["`senser`", "did you mean `sensor`?"]),
         bad("mu = 0.019", "mue = 0.019", 26, &["`mue`", "did you mean `mu`?"]),
         bad("ratio = 0.5", "ration = 0.5", 27, &["`ration`", "did you mean `ratio`?", "stribeck", "cable1"]),
-        bad("\"stribeck\"", "\"stribek\"", 27, &["`stribek`", "did you mean `stribeck`?", "`time_delay`", "cable1"]),
+        bad("\"stribeck\"", "\"stribek\"", 27, &["`stribek`", "did you mean `stribeck`?", "more)", "cable1"]),
         bad("per_pulley\"", "per_puley\"", 20, &["`per_puley`", "did you mean `per_pulley`?", "`presliding`"]),
         bad("wrap = \"pose\"", "wrap = \"poses\"", 24, &["`poses`", "did you mean `pose`?", "`wrap`"]),
         bad("wrap = \"pose\"", "wrap = 90.0", 24, &["`wrap` is 90.0", "text in quotes"]),

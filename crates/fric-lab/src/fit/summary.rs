@@ -300,13 +300,12 @@ fn undetermined(result: &FitResult) -> String {
         let without = learned.iter().filter(|cable| cable.undetermined.contains(&name) && !is_open_with_others(cable));
         let cables: Vec<&str> = without.map(|cable| cable.name.as_str()).collect();
         if !cables.is_empty() {
-            let _ = writeln!(
-                text,
-                "\nThe log does not determine {} of {}: the given value is kept.\n  Record {}.",
-                shown_name(&parameter),
-                listed(&cables, result),
-                parameter.row().excitation
-            );
+            let cables = listed(&cables, result);
+            let sentence =
+                format!("The log does not determine {} of {cables}: the given value is kept.", shown_name(&parameter));
+            text.push('\n');
+            text += &wrapped("", &sentence);
+            text += &wrapped("  ", &format!("Record {}.", parameter.row().excitation));
         }
     }
     for cable in &learned {
@@ -340,18 +339,18 @@ fn undetermined(result: &FitResult) -> String {
         if let Some(value) =
             learned.iter().find(|cable| cable.at_bound.contains(&name)).and_then(|cable| cable.parameters.get(&name))
         {
-            let _ = writeln!(
-                text,
-                "\n{} of {} is at its bound of {value}: the log would have it beyond. Something else is missing in the\nmodel, or the \
-                 parameter has nothing to explain.{}",
+            let sentence = format!(
+                "{} of {} is at its bound of {value}: the log would have it beyond. Something else is missing in the model, or the parameter has \
+                 nothing to explain.",
                 shown_name(&parameter),
-                listed(&cables, result),
-                if parameter.place() == MU && value <= parameter.row().min {
-                    "\n  Does the length grow where it should shrink, or is a force at the winch taken for one at the platform?"
-                } else {
-                    ""
-                }
+                listed(&cables, result)
             );
+            text.push('\n');
+            text += &wrapped("", &sentence);
+            if parameter.place() == MU && value <= parameter.row().min {
+                let question = "Does the length grow where it should shrink, or is a force at the winch taken for one at the platform?";
+                text += &wrapped("  ", question);
+            }
         }
     }
     text
