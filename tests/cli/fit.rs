@@ -404,10 +404,10 @@ fn without_a_wrench_the_mass_takes_its_place() {
 fn what_the_log_does_not_determine_is_named_with_what_to_record() {
     static SHORT: OnceLock<Vec<u8>> = OnceLock::new();
     let place = Place::empty();
-    // In three seconds the platform has moved for one, one way.
+    // In three seconds the platform has moved for one; half of the cables have hardly begun.
     let log = simulated(&SHORT, &example_robot(), &["--duration", "3", "--seed", "3"]);
     place.write("log.mcap", log);
-    let run = fit(&place, &["log.mcap"]).succeeds();
+    let run = fit(&place, &["log.mcap"]).warns(&["no sample can be used, values kept", "move too little"]);
     let result = place.json("fit.json");
     let cables = result["cables"].as_array().unwrap();
     let undetermined =
@@ -421,16 +421,11 @@ fn what_the_log_does_not_determine_is_named_with_what_to_record() {
         .collect();
     assert!(!names.is_empty(), "{result}");
     let told = unwrapped(&run.stdout);
-    for said in [
-        format!(
-            "The log does not determine σ (sigma_n_per_m) of {}: the given value is kept. Record small movements",
-            names.join(", ")
-        ),
-        "The log does not determine ε (offset_n) of any cable: the given value is kept. Record long movements in both"
-            .to_owned(),
-    ] {
-        assert!(told.contains(&said), "{said}: {run:#?}");
-    }
+    let said = format!(
+        "The log does not determine σ (sigma_n_per_m) of {}: the given value is kept. Record small movements",
+        names.join(", ")
+    );
+    assert!(told.contains(&said), "{said}: {run:#?}");
     // What only together with something else is open is said with it; the first part is kept.
     let open: Vec<&Value> = cables.iter().flat_map(|cable| cable["open"].as_array().unwrap()).collect();
     assert!(!open.is_empty() && run.stdout.matches("leaves a combination open").count() == open.len(), "{run:#?}");

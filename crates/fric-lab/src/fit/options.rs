@@ -21,7 +21,7 @@ pub struct FitOptions {
 
 impl FitOptions {
     /// Returns the free parameters of a cable that all its logs share: not the zero that each log has of its own, nor by default the other zero, whose
-    /// effect on the force is nearly the same. By default a cable that moves one way only has no zero free either.
+    /// effect on the force is nearly the same. By default a cable that moves one way only under a known load has no zero free either.
     pub(crate) fn shared(&self, record: &CableRecord<'_>) -> Vec<Parameter> {
         let mut free = self.free(record.params);
         if let Some(per_log) = record.per_log {
@@ -37,10 +37,10 @@ impl FitOptions {
         free
     }
 
-    /// Whether nothing tells the zero at the platform from friction. A search would not notice: with a reference that stays, friction as large as the force
-    /// beside a zero as large agrees with any log.
+    /// Whether nothing tells the zero at the platform from friction. A search would not notice: under a known load, which has no noise, friction as large as
+    /// the force beside a zero as large agrees with any log.
     pub(crate) fn is_zero_confused(&self, record: &CableRecord<'_>) -> bool {
-        self.parameters.is_none() && record.is_one_way()
+        self.parameters.is_none() && record.reference_is_known && record.is_one_way()
     }
 
     /// Returns the free parameters of a cable.

@@ -1,7 +1,5 @@
 //! The result of an identification for people, as the tables of \[P\].
 
-use std::fmt::Write as _;
-
 use fric_core::effects::Effect;
 use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 

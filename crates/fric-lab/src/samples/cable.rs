@@ -166,7 +166,7 @@ impl<'a> CableRecord<'a> {
         lasting_white_noise(&self.logs().flat_map(of_log).collect::<Vec<f64>>(), PLAY_OF_NOISE)
     }
 
-    /// Whether the cable moves one way only, so that friction cannot be told from a zero.
+    /// Whether the cable moves one way only, so that friction cannot be told from a zero by a load that stays.
     pub(crate) fn is_one_way(&self) -> bool {
         let ways_m = self.rows.iter().map(|row| row.signals.displacement_m);
         let [out_m, back_m] =

@@ -97,12 +97,12 @@ fn noise_that_matters_m(record: &CableRecord<'_>, limits: &SignalLimits, stop: &
 
 /// Returns the stretch of a log, at most [`MOST_CYCLES`] long, with the longest way.
 fn liveliest(record: &CableRecord<'_>) -> Range<usize> {
-    let mut ways_m = vec![0.0];
-    ways_m.extend(record.rows.iter().scan(0.0, |way_m, row| {
+    let mut covered_m = vec![0.0];
+    covered_m.extend(record.rows.iter().scan(0.0, |way_m, row| {
         *way_m += row.signals.displacement_m.abs();
         Some(*way_m)
     }));
-    let way_m = |cycles: &Range<usize>| ways_m[cycles.end] - ways_m[cycles.start];
+    let way_m = |cycles: &Range<usize>| covered_m[cycles.end] - covered_m[cycles.start];
     let of_log = |(start, rows): (usize, &[Row])| {
         let (end, length) = (start + rows.len(), rows.len().min(MOST_CYCLES));
         (start..=end - length).step_by(MOST_CYCLES / 8).map(move |from| from..from + length)

@@ -72,8 +72,11 @@ mod tests {
     #[test]
     fn what_goes_with_place_and_direction_repeats() {
         let passes = strokes(2 * FEWEST_PASSES);
-        let residual: Vec<f64> =
-            passes.0.iter().map(|part| part.map_or(0.0, |part| (part * part % 7) as f64)).collect();
+        let residual: Vec<f64> = passes
+            .0
+            .iter()
+            .map(|part| part.map_or(0.0, |part| f64::from(u8::try_from(part * part % 7).unwrap())))
+            .collect();
         assert!(passes.less_what_repeats(&residual).iter().all(|number| number.abs() < 1e-12));
         // One stroke less leaves too few passes in one direction.
         let few = strokes(2 * FEWEST_PASSES - 1);

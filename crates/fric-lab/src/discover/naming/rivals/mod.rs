@@ -78,17 +78,7 @@ pub fn best_rival(
             of_friction[place] = neutral[place];
         }
     }
-    let mut laws = laws(bench, &of_friction);
-    laws.retain(|law| law.of.is_none_or(|of| !kinds.contains(&of)));
-    // Whatever has a name may be a jump or two, of the sensor's zero or of the friction, or the damping of the contacts.
-    for ((_, neutral), without) in effects.iter().zip(&without) {
-        let of_zero = jumps(without.residuals_n(), |_| 1.0);
-        laws.extend(of_zero.map(|law| Law { level_of: Some(Effect::SensorOffset), ..law }));
-        laws.extend(jumps(without.residuals_n(), |cycle| without.added_n(cycle)));
-        laws.extend(contact_damping(bench, neutral, without));
-    }
-    // Only columns of one law are asked for together.
-    laws.sort_by_key(|law| Reverse(law.columns.len()));
+    let laws = laws_beside(bench, &of_friction, kinds, effects, &without);
     let several = laws.iter().map(|law| law.columns.len()).filter(|count| *count > 1).sum::<usize>();
     let listed = listed(&laws, effects.len(), excess);
     let end = effects.len() + laws.iter().map(|law| law.columns.len()).sum::<usize>();
@@ -173,6 +163,28 @@ pub fn best_rival(
         is_better.then_some(Rival { signal, replaces, gain: gain_left })
     };
     listed.iter().filter_map(of_law).max_by(|one, other| one.gain.total_cmp(&other.gain))
+}
+
+/// Returns the laws that are none of the effects, those of several columns first. `without` lists the model without each of the effects.
+fn laws_beside<'b>(
+    bench: &'b Workbench<'b>,
+    of_friction: &Values,
+    kinds: &[Effect],
+    effects: &[(Vec<Parameter>, Values)],
+    without: &'b [Evaluated<'b, 'b>],
+) -> Vec<Law<'b>> {
+    let mut laws = laws(bench, of_friction);
+    laws.retain(|law| law.of.is_none_or(|of| !kinds.contains(&of)));
+    // Whatever has a name may be a jump or two, of the sensor's zero or of the friction, or the damping of the contacts.
+    for ((_, neutral), without) in effects.iter().zip(without) {
+        let of_zero = jumps(without.residuals_n(), |_| 1.0);
+        laws.extend(of_zero.map(|law| Law { level_of: Some(Effect::SensorOffset), ..law }));
+        laws.extend(jumps(without.residuals_n(), |cycle| without.added_n(cycle)));
+        laws.extend(contact_damping(bench, neutral, without));
+    }
+    // Only columns of one law are asked for together.
+    laws.sort_by_key(|law| Reverse(law.columns.len()));
+    laws
 }
 
 /// Returns the places of the laws among the columns, from the first that is of no effect.
