@@ -18,6 +18,7 @@ for target in "${targets[@]}"; do
     robot_file) seeds=(fuzz/seeds/robot_file/* examples/mini-ipanema.toml) ;;
     manipulator_file) seeds=(examples/tendon-prototype.toml) ;;
     mcap) seeds=(fuzz/seeds/mcap/* tests/data/mcap-conformance/*-ch-*.mcap) ;;
+    log) seeds=(fuzz/seeds/log/* fuzz/seeds/mcap/*) ;;
     table) seeds=(fuzz/seeds/table/* fuzz/seeds/mcap/*) ;;
     ros2msg | message_path) seeds=(fuzz/seeds/"$target"/*) ;;
     *) seeds=() ;;

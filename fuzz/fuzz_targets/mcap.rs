@@ -1,22 +1,14 @@
-//! Bytes as a log, on the way that a replay takes: the recording, the robot file attached, the rows, the cycle.
+//! Bytes as an MCAP recording: its messages, twice the same, and what is told of damage.
 #![no_main]
 
 use std::fs;
 use std::sync::LazyLock;
 
-use fric_core::robot::file::RobotFile;
-use fric_lab::replay::Replay;
-use fric_log::log::Log;
 use fric_log::recording::Recording;
-use fric_log::robot::AttachedRobot;
-use fric_log::signals::{SignalPaths, SignalReader};
 use libfuzzer_sys::fuzz_target;
 use tempfile::TempDir;
 
 static PLACE: LazyLock<TempDir> = LazyLock::new(|| tempfile::tempdir().expect("a folder for logs"));
-static ROBOT: LazyLock<RobotFile> = LazyLock::new(|| {
-    RobotFile::parse(include_str!("../../examples/mini-ipanema.toml"), "example").expect("the example")
-});
 
 fuzz_target!(|data: &[u8]| {
     let path = PLACE.path().join("log.mcap");
@@ -25,23 +17,6 @@ fuzz_target!(|data: &[u8]| {
     let Ok(recording) = open() else { return };
     let messages = Messages::of(recording, data.len());
     assert_eq!(Messages::of(open().expect("a log that has been read"), data.len()), messages);
-
-    let log = Log::from(open().expect("a log that has been read"));
-    let attached = AttachedRobot::find(&log).ok().flatten();
-    let robot = attached.as_ref().map_or(&*ROBOT, |attached| &attached.robot);
-    let Ok(paths) = SignalPaths::of_robot(robot) else { return };
-    let names = robot.cable_names();
-    let Ok(mut replay) = Replay::new(&robot.params()) else { return };
-    let mut rows = SignalReader::new(log, paths, &names);
-    while let Ok(Some(sample)) = rows.next_row() {
-        assert_eq!((sample.cables.len(), sample.reference_force_n.len()), (names.len(), names.len()));
-        let cycle = replay.step(&sample);
-        for output in cycle.cables {
-            let numbers = [output.force_at_platform_n, output.friction_n, output.frictionless_n];
-            assert!(numbers.iter().all(|number| number.is_finite()), "{output:?}");
-        }
-    }
-    let _ = (rows.warnings(), rows.log().warnings());
 });
 
 /// What a log has to say, without the messages themselves.

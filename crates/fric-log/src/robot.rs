@@ -72,7 +72,8 @@ impl AttachedRobot {
 }
 
 impl SignalPaths {
-    /// Returns the paths that a robot file states under `[log]`, with a known reference and a pose from the lengths if it states them.
+    /// Returns the paths that a robot file states under `[log]`, with a known reference, and a pose and speeds from the lengths if it states
+    /// them.
     ///
     /// # Errors
     /// Returns a [`SignalPathError`] for the first invalid path.
@@ -85,7 +86,7 @@ impl SignalPaths {
         let paths = [
             (Role::Cable, Some(cable)),
             (Role::Length, length.as_ref()),
-            (Role::Speed, speed.as_ref()),
+            (Role::Speed, speed.as_ref().filter(|_| !robot.options().log.speed_is_from_lengths())),
             (Role::Reference, reference),
             (Role::Pose, Some(pose).filter(|_| !robot.options().log.pose_is_from_lengths())),
             (Role::Wrench, Some(wrench)),
@@ -94,6 +95,9 @@ impl SignalPaths {
         for (role, text) in paths {
             let path = text.map(|text| text.parse::<MessagePath>()).transpose();
             signals = signals.with(role, path.map_err(|source| SignalPathError { role, source })?);
+        }
+        if robot.options().log.speed_is_from_lengths() {
+            signals = signals.with_speed_from_lengths();
         }
         if robot.options().log.pose_is_from_lengths() {
             signals = signals.with_pose_from_lengths(Arc::new(robot.clone()));

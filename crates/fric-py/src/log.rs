@@ -368,9 +368,12 @@ impl Log {
 
     /// Returns a warning if the log was read with other stated signals than a robot's file has.
     fn read_otherwise(&self, py: Python<'_>, robot: &Robot) -> Vec<String> {
-        let stated = |of: &Robot| (of.file.params().known_reference(), of.file.options().log.pose_is_from_lengths());
+        let stated = |of: &Robot| {
+            let log = &of.file.options().log;
+            (of.file.params().known_reference(), log.pose_is_from_lengths(), log.speed_is_from_lengths())
+        };
         let is_other = |own: &Py<Robot>| stated(&own.borrow(py)) != stated(robot);
-        let warning = "the log was read with another known `reference` or `pose` under `[log]` than this robot has, and its signals stay as they were \
+        let warning = "the log was read with another known `reference`, `pose` or `speed` under `[log]` than this robot has, and its signals stay as they were \
                        read; read it again with `robot` for its own";
         self.robot.as_ref().filter(|own| is_other(own)).map(|_| warning.to_owned()).into_iter().collect()
     }

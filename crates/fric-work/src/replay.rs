@@ -1,6 +1,6 @@
 //! The result of `replay`: for machines (`format = "fric-replay/1"`) and as a table.
 
-use fric_core::robot::file::{POSE_FROM_LENGTHS, RobotFile};
+use fric_core::robot::file::{FROM_LENGTHS, RobotFile};
 use fric_lab::discover::Corrections;
 use fric_lab::discover::result::FaultResult;
 use fric_lab::discover::words::recording_lines;
@@ -70,7 +70,7 @@ impl PoseResult {
     #[must_use]
     pub fn of(poses: &LengthPoses) -> Self {
         Self {
-            source: POSE_FROM_LENGTHS,
+            source: FROM_LENGTHS,
             samples: poses.posed_count,
             missing: poses.unposed_count(),
             residual_rms_m: poses.residual_rms_m(),

@@ -8,6 +8,7 @@ mod storage;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use fric_core::robot::file::FROM_LENGTHS;
 use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness};
 use fric_lab::text::{table, table_with_text};
@@ -232,6 +233,14 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
         gaps: 0,
         residual_rms_m: None,
         remarks: vec!["known and not measured, the same for every cable".to_owned()],
+    }));
+    signals.extend(paths.speed_is_from_lengths().then(|| SignalResult {
+        signal: Role::Speed.key(),
+        path: FROM_LENGTHS.to_owned(),
+        messages: 0,
+        gaps: 0,
+        residual_rms_m: None,
+        remarks: vec!["derived from the cable lengths".to_owned()],
     }));
     signals.extend(reader.length_poses().map(|poses| SignalResult {
         signal: Role::Pose.key(),

@@ -28,8 +28,9 @@ use crate::text_file;
 /// The only value of `format` that this version reads.
 pub const FORMAT: &str = "fric-robot/1";
 
-/// Value of `pose` under `[log]` if no pose was measured: it is computed from the cable lengths ([`forward`](crate::forward)).
-pub const POSE_FROM_LENGTHS: &str = "lengths";
+/// Value of `pose` under `[log]` if no pose was measured: it is computed from the cable lengths ([`forward`](crate::forward)). Value of `speed` if it is
+/// derived from them too, whatever speed a log has.
+pub const FROM_LENGTHS: &str = "lengths";
 
 /// A robot file as written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -87,11 +88,11 @@ pub struct LogTable {
     pub cable: String,
     /// Cable lengths, if they have a topic or field of their own.
     pub length: Option<String>,
-    /// Cable speeds, if they have a topic or field of their own.
+    /// Cable speeds, if they have a topic or field of their own, or [`FROM_LENGTHS`].
     pub speed: Option<String>,
     /// Cable forces at the platform: where they are measured, or their known value.
     pub reference: ReferenceTable,
-    /// Pose of the platform, or [`POSE_FROM_LENGTHS`].
+    /// Pose of the platform, or [`FROM_LENGTHS`].
     pub pose: String,
     /// External wrench on the platform.
     pub wrench: String,
@@ -118,7 +119,13 @@ impl LogTable {
     /// Whether the pose is computed from the cable lengths.
     #[must_use]
     pub fn pose_is_from_lengths(&self) -> bool {
-        self.pose == POSE_FROM_LENGTHS
+        self.pose == FROM_LENGTHS
+    }
+
+    /// Whether the speeds are derived from the cable lengths even if a log has speeds.
+    #[must_use]
+    pub fn speed_is_from_lengths(&self) -> bool {
+        self.speed.as_deref() == Some(FROM_LENGTHS)
     }
 
     /// Checks that there are six cables for the six unknowns of a pose.
@@ -128,7 +135,7 @@ impl LogTable {
             return Ok(());
         }
         let problem = format!(
-            "is \"{POSE_FROM_LENGTHS}\", which takes `base_m` and `platform_m` of {FEWEST_CABLES} cables or more, and {complete} of the {} have both; give those that are missing, \
+            "is \"{FROM_LENGTHS}\", which takes `base_m` and `platform_m` of {FEWEST_CABLES} cables or more, and {complete} of the {} have both; give those that are missing, \
              or the topic of a measured pose",
             cables.len()
         );

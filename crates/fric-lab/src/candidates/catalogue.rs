@@ -3,6 +3,8 @@
 //! A search starts from several points if an effect's parameters have no influence at their neutral values, or if its sum of squares has several
 //! minima. The data decide between them.
 
+use std::f64::consts::FRAC_PI_2;
+
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, SIGMA, VISCOUS, Values};
 
@@ -34,6 +36,11 @@ pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
     let mean_tension_n = sum_n / count.max(1.0);
     let varies_n = (tension_n * tension_n - mean_tension_n * mean_tension_n).max(0.0).sqrt();
     let presliding_m = mu * tension_n / record.params.values()[SIGMA];
+    // A wrap that the pose decides is taken as 90°.
+    let wrap_factors = || {
+        let wraps_rad = record.params.fixed_wraps_rad().map(|wrap_rad| wrap_rad.unwrap_or(FRAC_PI_2));
+        wraps_rad.map(|wrap_rad| 2.0 * (0.5 * wrap_rad).sin())
+    };
     Around {
         cycle_s: record.cycle_s,
         interval_s: record.interval_s,
@@ -47,6 +54,9 @@ pub fn around(record: &CableRecord<'_>, mu: f64, noise_n: f64) -> Around {
         compliance_m_per_n: if varies_n > 0.0 { presliding_m / varies_n } else { 0.0 },
         length_noise_m: record.length_noise_m().unwrap_or(0.0).max(record.length_play_m / PLAY_OF_NOISE),
         pulley_count: u32::try_from(record.params.pulley_count()).unwrap_or(0),
+        sensor_ratio: gain.recip(),
+        wrap_factor_sum: wrap_factors().sum(),
+        wrap_factor_square_sum: wrap_factors().map(|factor| factor * factor).sum(),
         periods: Periods::default(),
     }
 }

@@ -70,12 +70,12 @@ pub fn lack_of(record: &CableRecord<'_>) -> Option<Lack> {
             RUN,
         ));
     }
-    if motion.speed_ratio < ONE_SPEED_RATIO {
-        let cause =
-            format!("it has one speed only, {:.3} m/s, so that no effect of speed can show", motion.speed_m_per_s);
-        return Some(Lack::new(cause, RUN));
-    }
     None
+}
+
+/// Whether a cable has only one speed while it moves, so that what depends on the speed is part of its friction.
+pub fn has_one_speed(record: &CableRecord<'_>) -> bool {
+    Motion::of(record).speed_ratio < ONE_SPEED_RATIO
 }
 
 /// Returns what is missing if this is the duration of the samples with a reference, s.
@@ -143,13 +143,11 @@ struct Motion {
     strokes: [usize; 2],
     /// High speed divided by low speed; 1 at a constant speed.
     speed_ratio: f64,
-    /// High speed, m/s.
-    speed_m_per_s: f64,
 }
 
 impl Motion {
     fn of(record: &CableRecord<'_>) -> Self {
-        let mut motion = Self { range_m: 0.0, strokes: [0, 0], speed_ratio: 1.0, speed_m_per_s: 0.0 };
+        let mut motion = Self { range_m: 0.0, strokes: [0, 0], speed_ratio: 1.0 };
         let mut speeds = Vec::new();
         for (_, rows) in record.logs() {
             let mut turns = Turns::default();
@@ -175,7 +173,7 @@ impl Motion {
         let moving = speeds.get(first..).unwrap_or_default();
         let (low, high) = (quantile(moving, 0.1), quantile(moving, 0.9));
         if low > 0.0 {
-            (motion.speed_ratio, motion.speed_m_per_s) = (high / low, high);
+            motion.speed_ratio = high / low;
         }
         motion
     }

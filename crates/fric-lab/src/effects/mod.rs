@@ -8,7 +8,7 @@
 pub mod truth;
 
 use fric_core::effects::Effect;
-use fric_core::parameters::Values;
+use fric_core::parameters::{MU, Values};
 use rand_chacha::ChaCha8Rng;
 
 use self::truth::Build;
@@ -57,6 +57,11 @@ pub struct Around {
     pub length_noise_m: f64,
     /// Number of pulleys of the cable.
     pub pulley_count: u32,
+    /// Force of the sensor without friction at a tension of 1 N, dimensionless.
+    pub sensor_ratio: f64,
+    /// Sums of the wrap factors `k` of the pulleys (\[P\] 7) and of their squares, dimensionless.
+    pub wrap_factor_sum: f64,
+    pub wrap_factor_square_sum: f64,
     /// Periods in the cable's length at which the residual ripples.
     pub periods: Periods,
 }
@@ -83,6 +88,13 @@ impl Around {
     /// Whether a warm-up with this time constant lasts long enough to be distinguished from the start of the run.
     fn lasts_s(&self, time_constant_s: f64) -> bool {
         time_constant_s > LEAST_WARM_UP_RATIO * self.end_s
+    }
+
+    /// Returns by what fraction of the tension laws of the same friction differ. The friction at a pulley, `a = μ·k` of a tension, may bear on the tension
+    /// before the pulley, behind it, or on their mean as in \[P\] 7. The force behind it is then `1 + a`, `1/(1 − a)` or `(2 + a)/(2 − a)` times the one before:
+    /// up to `a²` more, whichever way the cable runs. A sensor with another gain or zero looks like that, and friction that differs by direction.
+    fn between_laws_ratio(&self, values: &Values) -> f64 {
+        values[MU] * values[MU] * self.wrap_factor_square_sum
     }
 
     fn time_constants_s(&self) -> [f64; 2] {

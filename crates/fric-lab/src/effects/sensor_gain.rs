@@ -1,10 +1,13 @@
 //! `sensor_gain` in the simulated robot: a sensor whose amplifier has another slope.
 
+use fric_core::effects::sensor_gain::GAIN;
+use fric_core::parameters::Values;
+
 use super::truth::{Cause, TruthEffect};
-use super::{LabEffect, Sizing, Start, always, as_it_is};
+use super::{Around, LabEffect, Sizing, Start, as_it_is};
 
 /// The effect's entry in the lab.
-pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual: always };
+pub const LAB: LabEffect = LabEffect { truth, starts: as_it_is, typical, is_more_than_usual };
 
 #[derive(Debug)]
 struct Slope {
@@ -19,6 +22,11 @@ impl TruthEffect for Slope {
     fn sensor_gain(&self) -> f64 {
         self.gain
     }
+}
+
+/// Whether the gain is off by more than laws of friction differ.
+fn is_more_than_usual(values: &Values, around: &Around) -> bool {
+    (values[GAIN] - 1.0).abs() > around.between_laws_ratio(values)
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {

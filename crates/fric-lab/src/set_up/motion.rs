@@ -26,6 +26,13 @@ const MOST_OFF: f64 = 0.1;
 /// Relative difference of a ratio from that of its cause.
 const OF_CAUSE: f64 = 0.05;
 
+/// Difference of the speed from the rate of the length because it is late or early, as a fraction of the rate, both rms, beyond which it matters: behind
+/// a low-pass filter an inertia comes out 1 % too small then. With half of it that is a quarter of a percent, with twice as much 4 %.
+const MOST_LATE: f64 = 0.1;
+
+/// What to do about a speed that is not that of the length.
+const DERIVE: &str = "`speed = \"lengths\"` under `[log]` derives it from the length, as for a log without a speed";
+
 /// Usual ratios of a speed to the change of the length.
 const SPEED_CAUSES: [(f64, &str); 5] = [
     (1e3, "a speed in mm/s"),
@@ -102,6 +109,11 @@ impl<const COUNT: usize> Sums<COUNT> {
 /// Quantities of a step: the way by the speed and by the length, m.
 const BY_SPEED: usize = 0;
 const BY_LENGTH: usize = 1;
+/// Quantities of a step between two others: the way by the length that the speed lacks, m, the change of the length's rate, and the rate, m/s. A speed
+/// that is late by a time lacks that time's part of the change.
+const LACKED: usize = 0;
+const RATE_CHANGE: usize = 1;
+const STEP_RATE: usize = 2;
 /// Quantities of a stretch: the length, that of the pose, m, and the rate of the length, m/s.
 const SHOWN: usize = 0;
 const POSED: usize = 1;
@@ -117,6 +129,9 @@ struct CableMotion {
     /// Time since the present step began, s, and the ways in it.
     step: (f64, [f64; 2]),
     steps: Sums<2>,
+    /// The two steps before it: time, s, and ways, m.
+    past: [Option<(f64, [f64; 2])>; 2],
+    between: Sums<3>,
     /// Least and greatest length.
     range_m: Option<[f64; 2]>,
     /// Lengths at the ends of the steps since the last gap or jump, from the first on, because the zero of a length is not known.
@@ -211,7 +226,7 @@ impl Motions {
 
 impl CableMotion {
     fn end_stretch(&mut self) {
-        (self.last, self.step, self.start_m) = (None, Default::default(), None);
+        (self.last, self.step, self.past, self.start_m) = (None, Default::default(), [None; 2], None);
         self.stretches.join(&std::mem::take(&mut self.stretch).centred());
     }
 
@@ -245,6 +260,15 @@ impl CableMotion {
         }
         let (lasted_s, ways_m) = std::mem::take(&mut self.step);
         self.steps.add(ways_m);
+        if let [Some((first_s, first)), Some((middle_s, middle))] = self.past {
+            let [from_m_per_s, to_m_per_s] = [
+                (first[BY_LENGTH] + middle[BY_LENGTH]) / (first_s + middle_s),
+                (middle[BY_LENGTH] + ways_m[BY_LENGTH]) / (middle_s + lasted_s),
+            ];
+            let lacked_m = middle[BY_LENGTH] - middle[BY_SPEED];
+            self.between.add([lacked_m, to_m_per_s - from_m_per_s, middle[BY_LENGTH] / middle_s]);
+        }
+        self.past = [self.past[1], Some((lasted_s, ways_m))];
         Some(ways_m[BY_LENGTH] / lasted_s)
     }
 
@@ -262,8 +286,7 @@ impl CableMotion {
             return None;
         }
         if steps.products[BY_SPEED][BY_SPEED] == 0.0 {
-            let problem = "the speed is 0 throughout, though the length changes; leave the speed out of the log, and it is derived from the length";
-            return Some(problem.to_owned());
+            return Some(format!("the speed is 0 throughout, though the length changes. {DERIVE}"));
         }
         let ratio = steps.ratio(BY_SPEED, BY_LENGTH, LEAST_CORRELATION)?;
         // Noise of either makes one of the two slopes too low and the other too high.
@@ -272,13 +295,28 @@ impl CableMotion {
         let is_beyond = slopes.iter().all(|slope| *slope > BEYOND_ERRORS)
             || slopes.iter().all(|slope| *slope < BEYOND_ERRORS.recip());
         let likely = cause(&SPEED_CAUSES, ratio).unwrap_or("another unit; both are in metres and seconds");
-        is_beyond.then(|| {
-            format!(
-                "the speed is {} times the change of the length in a second; the likely cause is {likely}. Without a speed in the log it is derived from the \
-                 length",
+        if is_beyond {
+            return Some(format!(
+                "the speed is {} times the change of the length in a second; the likely cause is {likely}. {DERIVE}",
                 significant(ratio)
-            )
-        })
+            ));
+        }
+        let late_s = self.late_s()?;
+        let [by, way] = if late_s > 0.0 { ["late", "as behind a filter"] } else { ["early", "as a set point is"] };
+        Some(format!(
+            "the speed is {:.0} ms {by}, compared with the change of the length, {way}: viscous friction and inertia come out wrong. {DERIVE}",
+            late_s.abs() * 1e3
+        ))
+    }
+
+    /// Returns by how much the speed is late, s, if that matters and is most of what distinguishes it from the change of the length.
+    fn late_s(&self) -> Option<f64> {
+        let product = |one: usize, other: usize| self.between.products[one][other];
+        self.between.ratio(LACKED, RATE_CHANGE, LEAST_CORRELATION)?;
+        let late_s = product(LACKED, RATE_CHANGE) / product(RATE_CHANGE, RATE_CHANGE);
+        let by_lateness_m2 = late_s * late_s * product(RATE_CHANGE, RATE_CHANGE);
+        let way_m2 = STEP_S * STEP_S * product(STEP_RATE, STEP_RATE);
+        (by_lateness_m2 > MOST_LATE * MOST_LATE * way_m2).then_some(late_s)
     }
 
     /// Returns what is wrong with the length, or with the poses and points.
@@ -412,6 +450,44 @@ mod tests {
         );
         let [warning] = turned.as_slice() else { panic!("{turned:?}") };
         assert!(warning.contains("cable8: the changes of the length are not those"), "{warning}");
+    }
+
+    /// The warnings about a log at 100 Hz in which each length swings once in 2 s, and the speed is late by a time.
+    fn of_late_speed(late_s: f64) -> Vec<String> {
+        let robot = RobotFile::parse(EXAMPLE, "example").unwrap();
+        let mut motions = Motions::new(&robot.params());
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut noise = move || -> f64 { StandardNormal.sample(&mut random) };
+        for row in 0..3000_u32 {
+            let time_s = 0.01 * f64::from(row);
+            let cable = CableInput {
+                sensor_force_n: 1.0,
+                length_m: 0.1 * (std::f64::consts::PI * time_s).sin() + 5e-5 * noise(),
+                speed_m_per_s: 0.1 * std::f64::consts::PI * (std::f64::consts::PI * (time_s - late_s)).cos()
+                    + 2e-3 * noise(),
+            };
+            motions.add(&Sample {
+                stamp_nanos: i64::from(row) * 10_000_000,
+                cables: &[cable; 8],
+                reference_force_n: &[],
+                pose: None,
+                outside_wrench: None,
+            });
+        }
+        motions.warnings(&robot.cable_names())
+    }
+
+    #[test]
+    fn a_speed_that_is_late_or_early_is_reported_with_its_time() {
+        // Off by π·0.05 = 0.16 of the speed. Rates over steps of a tenth of a second make the time some percent too long.
+        for (late_s, word) in [(0.05, "late"), (-0.05, "early")] {
+            let [warning] = &*of_late_speed(late_s) else { panic!("no warning for {late_s} s") };
+            let told_ms = warning.split_once(&format!(" ms {word}")).and_then(|(start, _)| start.rsplit(' ').next());
+            let told_ms: f64 = told_ms.unwrap().parse().unwrap();
+            assert!((told_ms - 50.0).abs() < 2.5 && warning.contains("`speed = \"lengths\"`"), "{warning}");
+        }
+        // The difference of two lengths is late by half a sample.
+        assert_eq!([0.0, 0.005, 0.02].map(of_late_speed), [const { Vec::<String>::new() }; 3]);
     }
 
     /// Two logs, of which the second has the other sign: the first does not make up for it.

@@ -33,7 +33,7 @@
 //! quaternion, such as all zeros, gives no pose; the sign of a quaternion does not matter.
 //!
 //! A missing speed (an empty `velocity`, or NaN in it) is the slope of the known lengths of the cable around the row, one to twenty on each side, as
-//! many as their noise asks for ([`LengthWindow`]).
+//! many as their noise asks for ([`LengthWindow`]). With [`SignalPaths::with_speed_from_lengths`] every speed is.
 //!
 //! With a pose from the cable lengths ([`SignalPaths::with_pose_from_lengths`], [`fric_core::forward`]), each row has the pose of its own lengths; a
 //! row whose lengths give no pose has none.
@@ -122,10 +122,11 @@ pub struct SignalPaths {
     known_reference: Option<KnownReference>,
     columns: BTreeMap<String, ColumnTable>,
     pose_robot: Option<Arc<RobotFile>>,
+    speed_is_from_lengths: bool,
 }
 
 impl SignalPaths {
-    /// Sets the path of a role. A path of the reference replaces a known one, a path of the pose replaces one from the lengths.
+    /// Sets the path of a role. A path of the reference replaces a known one, a path of the pose or the speed replaces one from the lengths.
     #[must_use]
     pub fn with(mut self, role: Role, path: Option<MessagePath>) -> Self {
         self.paths[role as usize] = path;
@@ -134,6 +135,9 @@ impl SignalPaths {
         }
         if role == Role::Pose {
             self.pose_robot = None;
+        }
+        if role == Role::Speed {
+            self.speed_is_from_lengths = false;
         }
         self
     }
@@ -168,6 +172,18 @@ impl SignalPaths {
     #[must_use]
     pub fn pose_robot(&self) -> Option<&Arc<RobotFile>> {
         self.pose_robot.as_ref()
+    }
+
+    /// Lets the speed be derived from the cable lengths, even if the log has speeds.
+    #[must_use]
+    pub fn with_speed_from_lengths(self) -> Self {
+        Self { speed_is_from_lengths: true, ..self.with(Role::Speed, None) }
+    }
+
+    /// Whether the speed is derived from the cable lengths even if the log has speeds.
+    #[must_use]
+    pub fn speed_is_from_lengths(&self) -> bool {
+        self.speed_is_from_lengths
     }
 
     /// Sets the columns of a CSV log whose names differ from the defaults, by the keys of `[log.columns]`.

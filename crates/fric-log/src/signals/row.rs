@@ -12,6 +12,7 @@ pub(super) struct RowBuffer {
     pub row: Row,
     has_length_path: bool,
     has_speed_path: bool,
+    speed_is_from_lengths: bool,
     /// The constant reference of every cable, if there is one.
     constant_n: Option<f64>,
     /// Buffer for lengths and speeds with their own topics.
@@ -32,6 +33,7 @@ impl RowBuffer {
             row: Row::new(cable_count),
             has_length_path: paths.get(Role::Length).is_some(),
             has_speed_path: paths.get(Role::Speed).is_some(),
+            speed_is_from_lengths: paths.speed_is_from_lengths(),
             constant_n: paths.constant_reference_n(),
             numbers: vec![f64::NAN; cable_count],
             poses: [KnownPose::default(); 2],
@@ -75,7 +77,7 @@ impl RowBuffer {
         for (cable, length_m) in self.row.cables.iter_mut().zip(lengths_m) {
             cable.length_m = *length_m;
         }
-        let mut speeds = blocks.next();
+        let mut speeds = blocks.next().filter(|_| !self.speed_is_from_lengths);
         if self.has_speed_path {
             interpolate(speed, stamp_nanos, &mut self.numbers);
             speeds = Some(&self.numbers);

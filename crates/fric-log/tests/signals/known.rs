@@ -1,8 +1,9 @@
 //! References that are known and not measured.
 
+use fric_core::Sample;
 use fric_core::robot::file::RobotFile;
 use fric_log::recording::Recording;
-use fric_log::signals::{SignalPaths, SignalReader};
+use fric_log::signals::{SignalPaths, SignalReader, StatedSignals};
 
 use super::support::{JOINT_STATES, Log, MS, S, joints};
 
@@ -102,4 +103,56 @@ fn rows_come_whole_and_in_order_over_gaps_and_a_clock_that_is_set_back() {
     // Each of the three stretches of 100 ms lacks 40 ms at either end.
     let count = known.iter().filter(|row| (row[2] - 10.0).abs() < 1e-9).count();
     assert!((3 * 18..=3 * 24).contains(&count), "{count}");
+}
+
+/// Returns the bits of each row's length, speed and reference; through a log, and from samples that are no log's.
+fn speeds(log: &Log, of_log: &str) -> [Vec<[u64; 3]>; 2] {
+    let text = |of_log: &str| {
+        format!(
+            "format = 'fric-robot/1'\nname = 'bench'\ncycle_s = 0.001\n[log]\ncable = '/cables'\n{of_log}\n[[cable]]\nname = 'a'\n\
+             pulleys = [{{ wrap_deg = 90.0 }}]\n"
+        )
+    };
+    let paths = |of_log| SignalPaths::of_robot(&RobotFile::parse(&text(of_log), "bench").unwrap()).unwrap();
+    let reader = |paths| SignalReader::new(Recording::open(&[log.file().path()]).unwrap(), paths, &["a"]);
+    let bits = |row: &Sample<'_>| {
+        [row.cables[0].length_m, row.cables[0].speed_m_per_s, row.reference_force_n[0]].map(f64::to_bits)
+    };
+    let (mut of_rows, mut of_samples) = (Vec::new(), Vec::new());
+    let mut rows = reader(paths(of_log));
+    while let Some(row) = rows.next_row().unwrap() {
+        of_rows.push(bits(&row));
+    }
+    if let Some(mut stated) = StatedSignals::of(&paths(of_log)) {
+        let mut rows = reader(paths(""));
+        while let Some(row) = rows.next_row().unwrap() {
+            stated.push(&row);
+            while let Some(sample) = stated.next_sample() {
+                of_samples.push(bits(&sample));
+            }
+        }
+        stated.end();
+        while let Some(sample) = stated.next_sample() {
+            of_samples.push(bits(&sample));
+        }
+    }
+    [of_rows, of_samples]
+}
+
+#[test]
+fn speeds_from_the_lengths_take_the_place_of_those_of_the_log() {
+    let (mut with, mut without) = (Log::default(), Log::default());
+    for number in 0..300_i32 {
+        let stamp = S + i64::from(number) * MS;
+        let length_m = 1.0 + 0.1 * (0.02 * f64::from(number)).sin();
+        with.add("/cables", JOINT_STATES, stamp, joints(stamp, &["a"], &[length_m], &[7.0], &[3.0]));
+        without.add("/cables", JOINT_STATES, stamp, joints(stamp, &["a"], &[length_m], &[], &[3.0]));
+    }
+    let hanging = "reference = { hanging_mass_kg = 5.0 }\n";
+    for known in ["", hanging] {
+        let [derived, _] = speeds(&without, known);
+        assert_eq!(derived.len(), 300);
+        assert_ne!(speeds(&with, known)[0], derived);
+        assert_eq!(speeds(&with, &format!("{known}speed = 'lengths'\n")), [derived.clone(), derived]);
+    }
 }

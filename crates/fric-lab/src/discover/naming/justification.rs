@@ -1,6 +1,7 @@
 //! Criteria that an effect must meet to stay in a model.
 
 use fric_core::effects::Effect;
+use fric_core::effects::direction_asymmetry::VISCOUS as VISCOUS_ASYMMETRY;
 use fric_core::effects::ripple::repeats_first;
 use fric_core::effects::sensor_offset::OFFSET as OFFSET_OF_SENSOR;
 use fric_core::parameters::{OFFSET, Values};
@@ -181,11 +182,12 @@ fn doubt(portrait: &Portrait<'_>, is_noise: bool) -> Option<Refusal> {
 /// Whether a parameter of an effect is stuck at a bound other than its neutral value, or the period of a second ripple at that of the first. For friction
 /// that every model has, the ranges span orders of magnitude.
 pub fn is_at_end(effect: Effect, values: &Values, cycle_s: f64) -> bool {
+    // Viscous friction that acts one way only is no run-away search: it is what little there is of it may end up as.
     let has_run = |parameter: &Parameter| {
         let (least, greatest) = Coordinate::of(parameter, cycle_s).range();
         let neutral = parameter.row().neutral;
         let left = |end: f64| (end - values[parameter.place()]).abs() / (end - neutral).abs();
-        [least, greatest].into_iter().any(|end| left(end) < END_RATIO)
+        parameter.place() != VISCOUS_ASYMMETRY && [least, greatest].into_iter().any(|end| left(end) < END_RATIO)
     };
     repeats_first(effect, values) || !effect.is_friction() && fitted(effect).iter().any(has_run)
 }

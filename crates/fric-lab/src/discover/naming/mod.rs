@@ -26,13 +26,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fric_core::effects::Effect;
 use fric_core::effects::empirical::SHARES;
-use fric_core::parameters::{OFFSET, Values};
+use fric_core::parameters::{MU, OFFSET, Values};
 
 use self::entry::LAST_TURNS;
 use self::evidence::{delta_bic, inflation};
 use self::fits::gains;
 use self::justification::is_at_end;
 use super::effort::Effort;
+use super::readiness::has_one_speed;
 use super::workbench::{Trial, Workbench};
 use crate::candidates::catalogue::{fitted, has};
 use crate::effects::Around;
@@ -277,12 +278,16 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Returns the candidates that no log like this one can justify.
     fn beyond_the_log(&self) -> BTreeMap<Effect, Refusal> {
-        if self.bench.knows_load(self.noise_n) {
-            return BTreeMap::new();
-        }
-        let offset = Parameter::all().find(|of| of.place() == OFFSET);
-        let of_the_curve = [Effect::SensorGain, Effect::SensorNonlinearity];
-        of_the_curve.into_iter().filter_map(|effect| Some((effect, Refusal::Open(offset?)))).collect()
+        let of_the_curve: &[Effect] = &[Effect::SensorGain, Effect::SensorNonlinearity];
+        let of_the_speed: &[Effect] = &[Effect::Viscous, Effect::Stribeck, Effect::ViscousNonlinearity];
+        let has_one_load = !self.bench.knows_load(self.noise_n);
+        let has_one_speed = has_one_speed(&self.bench.record);
+        let open = [(has_one_load, of_the_curve, OFFSET), (has_one_speed, of_the_speed, MU)];
+        let effects = open.into_iter().filter(|(is_open, ..)| *is_open).flat_map(|(_, effects, place)| {
+            let from = Parameter::all().find(|of| of.place() == place);
+            effects.iter().filter_map(move |effect| Some((*effect, Refusal::Open(from?))))
+        });
+        effects.collect()
     }
 
     /// Returns the candidates that are never tried: those beyond the log, and those that by the reported intervals may not be there.
