@@ -198,7 +198,7 @@ impl ReplayResult {
         }
         for cable in self.cables.iter().filter(|cable| is_many(cable.flagged, cable.samples)) {
             todo.push(format!(
-                "Look at {}: {} of {} samples are flagged; the warnings of the command say why.",
+                "Look at {}: {} of {} samples are flagged; the warnings say why.",
                 cable.name, cable.flagged, cable.samples
             ));
         }
