@@ -1,11 +1,16 @@
 """Logs, simulated and replayed, from Python and by the command line: the same bits."""
 
 import json
+import pickle
+import struct
+from itertools import islice
 
 import fric
 import numpy as np
 import pytest
-from support import LOG, ROBOT, run
+from mcap.reader import make_reader
+from mcap.writer import Writer
+from support import LOG, ROBOT, SLOW_BENCH, run
 
 ARRAYS = [
     "stamp_nanos",
@@ -127,6 +132,61 @@ def test_arrays_have_what_the_robot_file_states(log, key, stated):
     assert made.cables == read.cables and made.wrench == read.wrench
     assert read.cables[0].after is not None
     assert np.array_equal(made.outside_wrench, read.outside_wrench, equal_nan=True)
+
+
+def test_a_replay_tells_where_its_poses_come_from(tmp_path, log):
+    robot = fric.Robot.read(ROBOT)
+    assert fric.replay(robot, log[:1.0]).pose is None
+    robot.log.pose = "lengths"
+    model, path = tmp_path / "lengths.toml", tmp_path / "result.json"
+    model.write_text(robot.to_toml(), encoding="utf-8")
+    run("replay", LOG, "--model", model, "--json", path)
+    expected = fric.ComputedPoses(**json.loads(path.read_text(encoding="utf-8"))["pose"])
+    assert (expected.source, expected.samples, expected.missing) == ("lengths", 50_000, 0)
+    read, arrays = fric.read_log(LOG, robot), arrays_of(log)
+    del arrays["position_m"], arrays["orientation_xyzw"]
+    made = fric.Log.from_arrays(cable_names=robot.cable_names, **arrays)
+    for same in [LOG, read, pickle.loads(pickle.dumps(read)), made]:
+        assert fric.replay(robot, same).pose == expected
+    # The error of the lengths is known for the whole log only.
+    assert fric.replay(robot, read[1.0:3.0]).pose == fric.ComputedPoses("lengths", 2000, 0, None)
+
+
+def test_what_is_missing_is_named_as_the_log_has_it(tmp_path):
+    path = tmp_path / "bench.csv"
+    rows = [f"{row * 0.004:.3f},{20 + row % 7 / 100},{1 + 0.1 * np.sin(row * 0.01):.6f}" for row in range(2000)]
+    path.write_text("\n".join(["time_s,winch.force_n,winch.length_m", *rows]) + "\n", encoding="utf-8")
+    bench = fric.Robot.from_toml(SLOW_BENCH)
+    with pytest.warns(fric.LogWarning, match=r"in columns such as `cable1.reference_n`"):
+        fric.replay(bench, path)
+    with pytest.raises(fric.FitError, match=r"in columns such as `cable1.reference_n`"):
+        fric.fit(bench, path)
+
+
+def test_a_reference_of_other_times_is_the_reason(tmp_path, robot):
+    path = tmp_path / "apart.mcap"
+    with LOG.open("rb") as source, path.open("wb") as target:
+        writer, channels = Writer(target), {}
+        writer.start()
+        for schema, channel, message in islice(make_reader(source).iter_messages(), 2500):
+            if channel.topic not in channels:
+                schema_id = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.topic] = writer.register_channel(channel.topic, channel.message_encoding, schema_id)
+            data = bytearray(message.data)
+            if channel.topic == "/reference_forces":
+                # The seconds of the stamp, behind four bytes that announce the encoding.
+                data[4:8] = struct.pack("<i", struct.unpack_from("<i", data, 4)[0] + 1000)
+            writer.add_message(channels[channel.topic], message.log_time, bytes(data), message.publish_time)
+        writer.finish()
+    with pytest.warns(fric.LogWarning) as warnings:
+        fric.replay(robot, path)
+    told = [str(warning.message) for warning in warnings]
+    assert ["messages is of a time of the cable signal" in text for text in told] == [True]
+    with (
+        pytest.warns(fric.LogWarning, match="none of its"),
+        pytest.raises(fric.FitError, match="no message of the reference signal is of a time .* by one clock"),
+    ):
+        fric.fit(robot, path)
 
 
 def test_a_simulation_has_the_bits_of_the_command_line(tmp_path, robot):

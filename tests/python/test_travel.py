@@ -67,6 +67,7 @@ def examples():
         replayed.cables[0],
         replayed.cables[0].after,
         fric.replay(platform, fric.simulate(platform, duration_s=1.0)).wrench[0],
+        fric.ComputedPoses("lengths", 9, 1, None),
         crossing,
         crossing.axes[0],
         crossing.axes[0].without,

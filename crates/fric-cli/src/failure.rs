@@ -21,6 +21,7 @@ use fric_log::write::WriteError;
 use fric_log::{in_full, reason, with_sources};
 use fric_tendon::file::ManipulatorFileError;
 use fric_tendon_lab::ContinuumError;
+use fric_work::replay::NoHistogram;
 
 use crate::terminal::{self, Label};
 
@@ -98,9 +99,7 @@ failure_with_advice_from!(ExcitationError, HysteresisError, LogError, RecordingE
 
 impl From<TimesApart> for Failure {
     fn from(apart: TimesApart) -> Self {
-        let signal = apart.role.key();
-        Self::new(format!("no message of the {signal} signal is of a time of the cable signal"))
-            .advise(TimesApart::ADVICE)
+        Self::new(apart.cause()).advise(TimesApart::ADVICE)
     }
 }
 
@@ -132,6 +131,12 @@ fn as_sentence(advice: &str) -> String {
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         Self::new(format!("{error}: {}", reason(&error.source))).advise(StoreError::ADVICE)
+    }
+}
+
+impl From<NoHistogram> for Failure {
+    fn from(error: NoHistogram) -> Self {
+        Self::new(error)
     }
 }
 

@@ -12,6 +12,7 @@ mod model;
 mod output;
 mod progress;
 mod steps;
+mod supervision;
 mod terminal;
 mod warnings;
 

@@ -6,7 +6,7 @@ use fric_core::robot::file::{FORMAT as ROBOT_FORMAT, RobotFile};
 use fric_core::text_file;
 use fric_log::log::Log;
 use fric_log::robot::{ATTACHED, AttachedRobot, AttachedRobotError, ROBOT_FILE};
-use fric_log::signals::SignalPaths;
+use fric_log::signals::{Part, Role, SignalPaths, SignalReader};
 use fric_tendon::file::FORMAT as MANIPULATOR_FORMAT;
 
 use crate::failure::{Failure, Outcome};
@@ -69,6 +69,13 @@ impl Model {
         let robot = RobotFile::parse(&text, &origin)?;
         terminal::note(format_args!("robot: {} from {origin}", robot.options().name));
         Ok(Self { robot, text, origin })
+    }
+
+    /// Returns a reader of the robot's signals in a part of a log, all but the unread one.
+    pub fn reader(&self, log: Log, part: Part, unread: Option<Role>) -> Outcome<SignalReader> {
+        let paths = self.signal_paths()?;
+        let paths = unread.into_iter().fold(paths, |paths, role| paths.with(role, None));
+        Ok(SignalReader::new(log, paths, &self.robot.cable_names()).within(part))
     }
 
     /// Returns the signals' paths from the robot file.

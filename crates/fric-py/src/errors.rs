@@ -14,14 +14,16 @@ use fric_lab::simulate::{HiddenError, SimulationError};
 use fric_log::output;
 use fric_log::recording::RecordingError;
 use fric_log::robot::{AttachedRobotError, SignalPathError};
-use fric_log::signals::SignalError;
+use fric_log::signals::{SignalError, TimesApart};
 use fric_log::table::TableError;
 use fric_log::write::WriteError;
 use fric_log::{in_full, reason};
 use fric_tendon::file::ManipulatorFileError;
 use fric_tendon::{ManipulatorError, StateMismatch};
 use fric_tendon_lab::ContinuumError;
+use fric_work::replay::NoHistogram;
 use numpy::AsSliceError;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 pyo3::import_exception!(fric._errors, ArrayTypeError);
@@ -200,6 +202,18 @@ impl From<fric_lab::fit::FitError> for Fault {
     fn from(error: fric_lab::fit::FitError) -> Self {
         let advice = error.advice(|reference| format!("reference=\"{}\"", reference.name()));
         Self::fit(advice.map_or_else(|| error.cause.clone(), |advice| format!("{}. {advice}", error.cause)))
+    }
+}
+
+impl From<TimesApart> for Fault {
+    fn from(apart: TimesApart) -> Self {
+        Self::fit(format!("{}. {}", apart.cause(), TimesApart::ADVICE))
+    }
+}
+
+impl From<NoHistogram> for Fault {
+    fn from(error: NoHistogram) -> Self {
+        Self(PyRuntimeError::new_err(error.to_string()))
     }
 }
 

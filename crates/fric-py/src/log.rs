@@ -12,6 +12,8 @@ use fric_log::cycle_warning;
 use fric_log::log::Log as LogSource;
 use fric_log::robot::{AttachedRobot, ROBOT_FILE};
 use fric_log::signals::{LengthWindow, Role, SignalPaths, SignalReader, StatedSignals};
+use fric_work::replay::PoseResult;
+use fric_work::source::{About, RowSource, read as read_samples, read_and_warn};
 use fric_work::verdict::counted;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyTypeError};
@@ -22,7 +24,7 @@ use crate::arguments::{argument, refused};
 use crate::arrays::{Axis, Wanted, fixed, fixed_rows, numbers, stamps_nanos};
 use crate::errors::{Fault, Outcome, legible};
 use crate::robot::{Robot, cables_in_words};
-use crate::watch::{STRIDE, Watch};
+use crate::watch::Watch;
 
 /// The samples of a log, joined on the times of the cable signal: read-only arrays with one row per sample.
 ///
@@ -76,6 +78,8 @@ pub struct Log {
     cable_names: Vec<String>,
     /// Shared by all parts of one log.
     origin: Arc<()>,
+    /// What was learned when it was read.
+    about: About,
     /// The files that it was read from, which no output may overwrite.
     pub sources: Vec<PathBuf>,
 }
@@ -260,8 +264,10 @@ impl Log {
         let columns = self.with_rows(py, |rows| Ok(rows.copied(start..start + within.count())))?;
         let names: Vec<&str> = self.cable_names.iter().map(String::as_str).collect();
         let robot = self.robot.as_ref().map(|robot| robot.borrow(py).clone());
+        let (rows, missing) = (columns.stamp_nanos.len() as u64, poseless_count(&columns));
+        let poses = self.about.poses.map(|poses| poses.of_part(rows, missing));
         let part = Self::new(py, columns, &names, robot, self.sources.clone())?;
-        Ok(Self { origin: Arc::clone(&self.origin), ..part })
+        Ok(Self { origin: Arc::clone(&self.origin), about: About { poses, ..self.about.clone() }, ..part })
     }
 
     /// Whether both are one log or parts of one.
@@ -297,8 +303,14 @@ impl Log {
             robot: robot.map(|robot| Py::new(py, robot)).transpose()?,
             cable_names: cable_names.iter().map(|name| (*name).to_owned()).collect(),
             origin: Arc::new(()),
+            about: About::default(),
             sources,
         })
+    }
+
+    /// Lends the samples to `work`, one after the other.
+    pub fn with_source<T>(&self, py: Python<'_>, work: impl FnOnce(&mut RowSource<'_>) -> Outcome<T>) -> Outcome<T> {
+        self.with_rows(py, |rows| work(&mut RowSource::new(rows, &self.about)))
     }
 
     /// Lends the samples to `work`.
@@ -343,27 +355,27 @@ impl Log {
         }
         let stated = StatedSignals::of(&paths).filter(|_| self.robot.is_none());
         let Some(mut stated) = stated else { return Ok(None) };
-        let (mut columns, mut cables) = (SampleColumns::default(), Vec::new());
-        self.with_rows(py, |rows| {
-            watch.work(rows.len(), |range| {
-                for row in range {
-                    let Some(sample) = rows.sample(row, &mut cables) else { break };
-                    stated.push(&sample);
-                    while let Some(sample) = stated.next_sample() {
-                        columns.push(&sample);
-                    }
+        let mut columns = SampleColumns::default();
+        let all = |source: &mut RowSource<'_>| {
+            read_samples(source, watch, |sample| {
+                stated.push(sample);
+                while let Some(sample) = stated.next_sample() {
+                    columns.push(&sample);
                 }
                 Ok(())
             })
-        })?;
+        };
+        self.with_source(py, all)??;
         stated.end();
         while let Some(sample) = stated.next_sample() {
             columns.push(&sample);
         }
-        warn(py, &stated.length_poses().map_or_else(Vec::new, |poses| poses.warnings()))?;
+        let poses = stated.length_poses();
+        warn(py, &poses.map_or_else(Vec::new, |poses| poses.warnings()))?;
+        let about = About { poses: poses.as_ref().map(PoseResult::of), ..About::default() };
         let names: Vec<&str> = self.cable_names.iter().map(String::as_str).collect();
         let stated = Self::new(py, columns, &names, None, self.sources.clone())?;
-        Ok(Some(Self { origin: Arc::clone(&self.origin), ..stated }))
+        Ok(Some(Self { origin: Arc::clone(&self.origin), about, ..stated }))
     }
 
     /// Returns a warning if the log was read with other stated signals than a robot's file has.
@@ -476,39 +488,22 @@ fn read(
     };
     let file = robot.file.clone();
     let names = file.cable_names();
-    let total_bytes = source.total_bytes();
     let mut paths = SignalPaths::of_robot(&file)?;
     if let Some(unread) = unread {
         paths = paths.with(unread, None);
     }
-    let mut reader = SignalReader::new(source, paths, &names);
     let mut columns = SampleColumns::default();
-    let end = loop {
-        watch.look(reader.log().bytes_read(), total_bytes)?;
-        let piece = py.detach(|| {
-            for _ in 0..STRIDE {
-                let Some(sample) = reader.next_row()? else { return Ok(true) };
-                columns.push(&sample);
-            }
-            Ok(false)
-        });
-        match piece {
-            Ok(false) => {}
-            Ok(true) => break Ok(()),
-            Err(error) => break Err::<(), fric_log::signals::SignalError>(error),
-        }
-    };
-    watch.look(total_bytes, total_bytes)?;
-    // Damage may be the reason why the log cannot be used.
-    warn(py, &reader.log().warnings())?;
-    end?;
-    warn(py, &reader.warnings())?;
+    let about = read_and_warn(&mut SignalReader::new(source, paths, &names), &file, watch, |sample| {
+        columns.push(sample);
+        Ok(())
+    })?;
     match unread {
-        Some(_) => warn(py, reader.cycle_warning(&file).as_slice())?,
-        None => warn(py, &reader.robot_warnings(&file))?,
+        Some(_) => warn(py, about.cycle.as_slice())?,
+        None => warn(py, &about.robot)?,
     }
     warn(py, &too_great(&columns, &names))?;
-    Log::new(py, columns, &names, Some(robot), sources)
+    let log = Log::new(py, columns, &names, Some(robot), sources)?;
+    Ok(Log { about, ..log })
 }
 
 /// The magnitude from which the sum of the squares of a log's numbers may overflow.
@@ -578,6 +573,11 @@ fn derived_speed_m_per_s(stamp_nanos: &[i64], length_m: &[f64], cable_count: usi
         }
     }
     speed_m_per_s
+}
+
+/// Returns the number of rows without a pose.
+fn poseless_count(columns: &SampleColumns) -> u64 {
+    columns.position_m.chunks_exact(3).filter(|position_m| position_m.iter().any(|it| it.is_nan())).count() as u64
 }
 
 /// Normalises the quaternions. An invalid pose is refused unless all of it is NaN.

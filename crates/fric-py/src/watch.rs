@@ -6,11 +6,13 @@ use std::thread;
 use std::time::Duration;
 
 use fric_lab::fit::Progress;
+use fric_work::supervisor::Supervisor;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
 
-use crate::errors::Outcome;
+use crate::errors::{Fault, Outcome};
+use crate::log;
 
 /// Number of cycles between two checks of Ctrl-C and progress: a few milliseconds.
 pub const STRIDE: usize = 4096;
@@ -43,8 +45,24 @@ impl<'py> Watch<'py> {
         self.part = (part, count);
     }
 
+    /// Processes `0..count` in pieces, with the interpreter released during each.
+    pub fn work(&mut self, count: usize, mut piece: impl FnMut(Range<usize>) -> Outcome + Send) -> Outcome {
+        let mut done = 0;
+        while done < count {
+            self.look(done as u64, count as u64)?;
+            let end = count.min(done + STRIDE);
+            self.py.detach(|| piece(done..end))?;
+            done = end;
+        }
+        self.look(count as u64, count as u64)
+    }
+}
+
+impl Supervisor for Watch<'_> {
+    type Error = Fault;
+
     /// Raises the exception of Ctrl-C, and shows the progress.
-    pub fn look(&mut self, done: u64, total: u64) -> Outcome {
+    fn look(&mut self, done: u64, total: u64) -> Outcome {
         self.py.check_signals()?;
         let Some(progress) = &self.progress else { return Ok(()) };
         let of_part = (done.min(total) * 100).checked_div(total).unwrap_or(100);
@@ -57,11 +75,25 @@ impl<'py> Watch<'py> {
         Ok(())
     }
 
-    /// Runs a fit in separate threads with the interpreter released, and ends it on Ctrl-C.
-    pub fn fit<T: Send>(&mut self, fit: impl FnOnce(&Progress) -> T + Send) -> Outcome<T> {
+    fn warn(&mut self, texts: &[String]) -> Outcome {
+        log::warn(self.py, texts)
+    }
+
+    /// Runs with the interpreter released.
+    fn piece<T: Send>(&mut self, work: impl FnOnce() -> T + Send) -> T {
+        self.py.detach(work)
+    }
+
+    /// Works in separate threads, with the interpreter released.
+    fn compute<T: Send>(
+        &mut self,
+        _doing: &'static str,
+        _steps: &str,
+        work: impl FnOnce(&Progress) -> T + Send,
+    ) -> Outcome<T> {
         let (py, progress) = (self.py, Progress::new());
         thread::scope(|scope| {
-            let worker = scope.spawn(|| with_own_threads(|| fit(&progress)));
+            let worker = scope.spawn(|| with_own_threads(|| work(&progress)));
             let mut seen = Ok(());
             while !worker.is_finished() {
                 let (done, total) = progress.steps();
@@ -75,18 +107,6 @@ impl<'py> Watch<'py> {
             seen.and_then(|()| self.look(1, 1))?;
             fitted
         })
-    }
-
-    /// Processes `0..count` in pieces, with the interpreter released during each.
-    pub fn work(&mut self, count: usize, mut piece: impl FnMut(Range<usize>) -> Outcome + Send) -> Outcome {
-        let mut done = 0;
-        while done < count {
-            self.look(done as u64, count as u64)?;
-            let end = count.min(done + STRIDE);
-            self.py.detach(|| piece(done..end))?;
-            done = end;
-        }
-        self.look(count as u64, count as u64)
     }
 }
 

@@ -1,8 +1,12 @@
-//! What the command line and the Python module share beyond the computation: results as JSON, verdicts and pages, and the files around them.
+//! What the command line and the Python module share: the work on logs from their samples to the result, results as JSON, verdicts and pages, and the
+//! files around them.
 //!
+//! - [`replay`], [`fit`], [`discover`] and [`hysteresis`] each `run` the computation of `fric-lab` on a log, with its warnings in their order; [`runs`]
+//!   are the logs of a fit or a discovery.
+//! - A log is a [`source`] of samples: files, or arrays in memory. A [`supervisor`] shows progress and warnings, and ends work early.
 //! - [`json`] is a result for machines; [`provenance`] records its origin.
 //! - [`verdict`] is the first sentence about a result and what to do next; [`report`] contains the pages, each one file without network access.
-//! - [`replay`] is the result of a replay, [`fit_report`] a fit in the style of lmfit. The texts of the other results are in `fric-lab`.
+//! - [`replay::ReplayResult`] is the result of a replay, [`fit_report`] a fit in the style of lmfit. The texts of the other results are in `fric-lab`.
 //! - [`set_points`] writes the run of [`excite`]; [`questions`] reads those that a designed run answers; [`recording_name`] checks the name of an
 //!   output.
 //!
@@ -24,18 +28,24 @@
 //! # }
 //! ```
 //!
-//! This crate neither reads logs nor computes friction, and it depends on neither a terminal nor Python.
+//! This crate decodes no log and computes no friction, and it depends on neither a terminal nor Python.
 
 #![allow(clippy::doc_markdown, reason = "symbols of equations are no code items")]
 
+pub mod discover;
 pub mod excite;
+pub mod fit;
 pub mod fit_report;
+pub mod hysteresis;
 pub mod provenance;
 pub mod questions;
 pub mod recording_name;
 pub mod replay;
 pub mod report;
+pub mod runs;
 pub mod set_points;
+pub mod source;
+pub mod supervisor;
 pub mod verdict;
 
 use serde::Serialize;

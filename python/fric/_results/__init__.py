@@ -16,7 +16,7 @@ from .discover import CableDiscovery, DiscoverResult
 from .excite import ExciteResult
 from .fit import CableFit, FitResult
 from .hysteresis import AxisHysteresis, HysteresisResult, Width
-from .replay import CableErrors, Compensation, ForceError, ReplayResult, WrenchError
+from .replay import CableErrors, Compensation, ComputedPoses, ForceError, ReplayResult, WrenchError
 
 __all__ = [
     "AxisHysteresis",
@@ -26,6 +26,7 @@ __all__ = [
     "CalibrationResult",
     "Command",
     "Compensation",
+    "ComputedPoses",
     "DiscoverResult",
     "ExciteResult",
     "FitResult",

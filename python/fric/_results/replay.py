@@ -86,6 +86,24 @@ class CableErrors(Value):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class ComputedPoses(Value):
+    """Poses that are not those of the log."""
+
+    source: Literal["lengths"]
+    """What they were computed from: the cable "lengths"."""
+    samples: int
+    """Number of samples with a pose."""
+    missing: int
+    """Number of samples without a pose."""
+    residual_rms_m: float | None
+    """Error of the lengths at the poses, rms over cables and samples, m; None without a pose, and for a part of a log."""
+
+    @staticmethod
+    def _of(entry: dict[str, Any] | None) -> ComputedPoses | None:
+        return ComputedPoses(**{"residual_rms_m": None, **entry}) if entry else None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Compensation(Value):
     """Output of one cycle (one number per cable), or of several (one row per cycle). The arrays are read-only."""
 
@@ -113,6 +131,8 @@ class ReplayResult(Result):
     """Error of the wrench before and after; None without a wrench in the log."""
     wrench_reference: Literal["wrench", "mass"] | None
     """Reference of the wrench: "wrench" in the log, or the one computed from the "mass" of the platform."""
+    pose: ComputedPoses | None
+    """The poses, if the robot says that they come from the lengths; None if they are those of the log."""
     force_at_platform_n: NDArray[np.float64]
     """Cable forces at the platform, N."""
     friction_n: NDArray[np.float64]
@@ -145,6 +165,5 @@ class ReplayResult(Result):
             )
             for cable, bits in zip(found["cables"], flags)
         )
-        return cls(
-            shown, found["robot"], cables, WrenchError._pair(wrench), wrench and wrench["reference"], **vars(cycles)
-        )
+        pose, reference = ComputedPoses._of(found.get("pose")), wrench and wrench["reference"]
+        return cls(shown, found["robot"], cables, WrenchError._pair(wrench), reference, pose, **vars(cycles))

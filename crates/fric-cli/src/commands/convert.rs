@@ -3,17 +3,15 @@
 use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile};
 use fric_log::log::Log;
 use fric_log::robot::ROBOT_FILE;
-use fric_log::signals::SignalReader;
 use fric_log::write::{LogWriter, SampledLog};
+use fric_work::source::read_and_warn;
 use fric_work::verdict::counted;
 
 use crate::arguments::ConvertArguments;
 use crate::failure::{Failure, Outcome};
-use crate::interrupt;
 use crate::model::{self, Model};
 use crate::output::{self, Written};
-use crate::progress::{self, STRIDE};
-use crate::warnings::warn_all;
+use crate::supervision::Watch;
 
 /// Runs the command.
 pub fn run(arguments: &ConvertArguments) -> Outcome {
@@ -34,19 +32,8 @@ pub fn run(arguments: &ConvertArguments) -> Outcome {
     let mut writer = LogWriter::create(output, &inputs, *force)?;
     writer.attach_robot_file(&with_default_topics(&model)?)?;
     let mut converted = SampledLog::new(writer, &cable, &names)?;
-    let bar = progress::bytes(source.total_bytes());
-    let mut reader = SignalReader::new(source, model.signal_paths()?, &names).within(part);
     let mut count = 0_u64;
-    let end = loop {
-        if count.is_multiple_of(STRIDE) {
-            interrupt::check()?;
-            bar.set_position(reader.log().bytes_read());
-        }
-        let sample = match reader.next_row() {
-            Ok(Some(sample)) => sample,
-            Ok(None) => break Ok(()),
-            Err(error) => break Err(error),
-        };
+    read_and_warn(&mut model.reader(source, part, None)?, &model.robot, &mut Watch::default(), |sample| {
         count += 1;
         if let Some(topic) = reference.as_ref().filter(|_| sample.reference_force_n.iter().any(|it| !it.is_nan())) {
             converted.add_reference(topic, &names)?;
@@ -57,12 +44,8 @@ pub fn run(arguments: &ConvertArguments) -> Outcome {
         if sample.outside_wrench.is_some() {
             converted.add_wrench(&wrench)?;
         }
-        converted.write(&sample, true)?;
-    };
-    progress::finish(&bar);
-    warn_all(&reader.log().warnings());
-    end?;
-    warn_all(&reader.warnings());
+        Ok(converted.write(sample, true)?)
+    })?;
     let told = format!("{count} samples of {}, {ROBOT_FILE} attached", counted(names.len(), "cable"));
     output::show_with("", vec![Written::new(converted.complete()?, told)], "")
 }

@@ -2,20 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use fric_lab::discover::result::DiscoverResult;
-use fric_lab::discover::{DiscoverOptions, Discoveries};
-use fric_lab::fit::Reference;
-use fric_lab::fit::readiness;
+use fric_lab::discover::DiscoverOptions;
 use fric_log::output::OutputFile;
+use fric_work::{discover, report};
 
 use super::continuum;
-use crate::arguments::{DiscoverArguments, ReferenceName};
+use crate::arguments::DiscoverArguments;
 use crate::failure::{Failure, Outcome};
-use crate::measurements::{check_named_once, find_model, read, watched};
+use crate::measurements::{self, check_named_once, find_model};
 use crate::output::{self, JsonTarget, Written};
-use crate::warnings::warn_all;
-use fric_work::provenance::shown_path;
-use fric_work::report;
+use crate::supervision::Watch;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
@@ -39,31 +35,10 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
     let extended_file = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
 
-    let reference = match reference {
-        ReferenceName::Forces => Reference::Forces,
-        ReferenceName::Wrench => {
-            // The robot file alone can make it impossible.
-            readiness::geometry(&model.robot, &model.origin).map_or(Ok(()), |lack| Err(lack.error()))?;
-            Reference::Wrench
-        }
-    };
-    let read = read(logs, part, &model, reference)?;
-    let readiness = match reference {
-        Reference::Forces => readiness::to_discover(&model.robot, &read.holdings),
-        Reference::Wrench => readiness::to_discover_by_wrench(&model.robot, &model.origin, &read.holdings),
-    };
-    // Missing data of some cables are reported only beside their verdicts.
-    read.check(&readiness)?;
+    let mut watch = Watch::default();
+    let runs = measurements::read(logs, part, &model, (*reference).into(), per_log, &mut watch)?;
     let options = DiscoverOptions { empirical: !no_empirical, series: report.is_some() };
-    let what = if reference == Reference::Forces { "stages" } else { "searches" };
-    let samples = read.samples.with_zero_per_log(per_log);
-    let found = watched("discovering", what, |progress| Discoveries::of(&samples, &options, progress))??;
-
-    let names = logs.iter().map(|log| shown_path(log));
-    let starts: Vec<(String, f64)> = names.zip(samples.log_starts_s()).collect();
-    let outcome = DiscoverResult::new(&model.robot, &starts, &readiness, found.cables()).with_wrench(found.wrench());
-    outcome.check_told()?;
-    warn_all(&found.warnings(&model.robot.cable_names()));
+    let (outcome, found) = discover::run(&runs, &options, &mut watch)?;
     let mut files = Vec::new();
     if let Some(file) = extended_file {
         files.push(Written::new(

@@ -13,14 +13,15 @@ use fric_work::questions::{QuestionError, Request, questions};
 use fric_work::report::RunSeries;
 use fric_work::report::preview::{self, Purpose};
 use fric_work::set_points::SetPointTable;
+use fric_work::supervisor::Supervisor as _;
 
 use crate::arguments::{DesignArguments, ExciteArguments};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
-use crate::measurements::watched;
 use crate::model::Model;
 use crate::output::{self, Written};
 use crate::progress::{self, STRIDE};
+use crate::supervision::Watch;
 use crate::warnings::warn;
 
 /// Runs the command.
@@ -43,7 +44,8 @@ pub fn run(arguments: &ExciteArguments) -> Outcome {
         Some((command, questions)) => {
             let duration_s = arguments.design.duration_s.unwrap_or(STANDARD_DURATION_S);
             let work = |progress: &_| design(&model.robot, &options, duration_s, &questions, progress);
-            let Experiment { excitation, forecasts } = watched("designing", "steps", work)?.map_err(refused)?;
+            let Experiment { excitation, forecasts } =
+                Watch::default().compute("designing", "steps", work)?.map_err(refused)?;
             let expectations = expectations(&model.robot.cable_names(), &forecasts);
             (excitation, Some(Purpose { expectations, command }))
         }

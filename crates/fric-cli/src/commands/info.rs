@@ -17,6 +17,7 @@ use fric_log::log::Log;
 use fric_log::output::OutputFile;
 use fric_log::signals::{Part, Role, SignalError, SignalReader};
 use fric_work::report::SignalSeries;
+use fric_work::source::read;
 use serde::Serialize;
 
 use super::continuum;
@@ -27,6 +28,7 @@ use crate::model::Model;
 use crate::output::{self, JsonTarget, Written};
 use crate::progress::{self, STRIDE};
 use crate::steps::{StepResult, step_table};
+use crate::supervision::Watch;
 use crate::warnings::warn_all;
 use columns::ColumnResult;
 use pace::{Pace, Times, seconds_between};
@@ -194,39 +196,31 @@ struct SignalsRead {
 
 /// Reads the signals and joins them as the other commands do.
 fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut SignalSeries>) -> Outcome<SignalsRead> {
-    let paths = model.signal_paths()?;
-    let bar = progress::bytes(log.total_bytes());
-    let mut reader = SignalReader::new(log, paths.clone(), &model.robot.cable_names()).within(part);
+    let mut reader = model.reader(log, part, None)?;
     let mut holdings = Holdings::new(model.robot.cable_names().len()).of_columns(reader.log().column_names().is_some());
     let mut times = Times::default();
-    let problem = loop {
-        if holdings.rows.is_multiple_of(STRIDE) {
-            interrupt::check()?;
-            bar.set_position(reader.log().bytes_read());
+    let end = read(&mut reader, &mut Watch::default(), |row| {
+        times.add(row.stamp_nanos);
+        holdings.add(row);
+        if let Some(series) = &mut series {
+            series.add(row);
         }
-        match reader.next_row() {
-            Ok(Some(row)) => {
-                times.add(row.stamp_nanos);
-                holdings.add(&row);
-                if let Some(series) = &mut series {
-                    series.add(&row);
-                }
-            }
-            Ok(None) => break None,
-            // A read error of the disk says nothing about the log.
-            Err(SignalError::Recording(error)) => return Err(error.into()),
-            // The robot file is wrong.
-            Err(error @ SignalError::Csv(CsvError::Misnamed { .. })) => return Err(error.into()),
-            Err(error) => break Some(error.to_string()),
-        }
+        Ok(())
+    })?;
+    let problem = match end {
+        Ok(()) => None,
+        // A read error of the disk says nothing about the log.
+        Err(SignalError::Recording(error)) => return Err(error.into()),
+        // The robot file is wrong.
+        Err(error @ SignalError::Csv(CsvError::Misnamed { .. })) => return Err(error.into()),
+        Err(error) => Some(error.to_string()),
     };
-    progress::finish(&bar);
     let mut signals = signal_results(&reader);
     if reader.log().column_names().is_some() {
         warn_all(&reader.log().warnings());
     }
     let reference = &model.robot.options().log.reference;
-    signals.extend(paths.known_reference().map(|_| SignalResult {
+    signals.extend(reader.paths().known_reference().map(|_| SignalResult {
         signal: Role::Reference.key(),
         path: reference.to_string(),
         messages: 0,
@@ -234,7 +228,7 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
         residual_rms_m: None,
         remarks: vec!["known and not measured, the same for every cable".to_owned()],
     }));
-    signals.extend(paths.speed_is_from_lengths().then(|| SignalResult {
+    signals.extend(reader.paths().speed_is_from_lengths().then(|| SignalResult {
         signal: Role::Speed.key(),
         path: FROM_LENGTHS.to_owned(),
         messages: 0,

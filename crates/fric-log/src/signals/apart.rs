@@ -27,6 +27,12 @@ impl TimesApart {
     /// What to do, one sentence without its full stop.
     pub const ADVICE: &str =
         "Record both at the same time and stamp them by one clock; a stamp of zero counts as the log time";
+
+    /// Returns the reason why work that needs the signal cannot start.
+    #[must_use]
+    pub fn cause(&self) -> String {
+        format!("no message of the {} signal is of a time of the cable signal", self.role.key())
+    }
 }
 
 /// Writes both ranges and what to do.

@@ -4,6 +4,7 @@ use fric_tendon::edit::rewrite;
 use fric_tendon_lab::discover::discover;
 use fric_work::provenance::{Provenance, shown_path};
 use fric_work::report::continuum as report;
+use fric_work::supervisor::Supervisor as _;
 use pyo3::prelude::*;
 
 use super::{ARRAYS, Manipulator, TendonRun, check_disks, flat};
@@ -25,7 +26,8 @@ pub fn continuum_discover(
     check_disks(manipulator, &run.run)?;
     let (file, files, run) = (&manipulator.file, run.files(), &run.run);
     let source = files.first().map_or_else(|| ARRAYS.to_owned(), |path| shown_path(path));
-    let found = Watch::new(py, None)?.fit(|progress| discover(file, run, &source, progress))??;
+    let found =
+        Watch::new(py, None)?.compute("searching", "searches", |progress| discover(file, run, &source, progress))??;
     let noise = found.base_noise.map(|noise| noise.warning());
     log::warn(py, &run.begin_warning().into_iter().chain(noise).collect::<Vec<_>>())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;

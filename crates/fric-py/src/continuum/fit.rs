@@ -7,6 +7,7 @@ use fric_tendon_lab::Run;
 use fric_tendon_lab::identify::{Quantity, TendonFitOptions, identify};
 use fric_work::provenance::Provenance;
 use fric_work::report::continuum as report;
+use fric_work::supervisor::Supervisor as _;
 use pyo3::prelude::*;
 
 use super::{Manipulator, TendonRun, check_disks};
@@ -63,7 +64,8 @@ pub fn continuum_fit(
     let sources: Vec<String> = all.iter().map(|run| run.get().name().to_owned()).collect();
     measured.iter().try_for_each(|run| check_disks(manipulator, run))?;
     let file = &manipulator.file;
-    let found = Watch::new(py, None)?.fit(|progress| identify(file, &measured, &sources, &options, progress))??;
+    let found = Watch::new(py, None)?
+        .compute("fitting", "searches", |progress| identify(file, &measured, &sources, &options, progress))??;
     log::warn(py, &measured.iter().filter_map(Run::begin_warning).collect::<Vec<_>>())?;
     log::warn(py, &found.result.warnings())?;
     let text = rewrite(&manipulator.text, "manipulator", &found.edit)?;

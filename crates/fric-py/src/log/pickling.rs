@@ -3,7 +3,10 @@
 
 use std::path::PathBuf;
 
+use fric_core::robot::file::FROM_LENGTHS;
 use fric_lab::columns::SampleColumns;
+use fric_work::replay::PoseResult;
+use fric_work::source::About;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -13,9 +16,12 @@ use crate::errors::Outcome;
 use crate::robot::Robot;
 use crate::travel::Reduced;
 
-/// Names of the cables, stamps, the other arrays in the order of `ARRAYS`, robot and files.
+/// Names of the cables, stamps, the other arrays in the order of `ARRAYS`, robot, files, and what was learned when they were read.
 type Pickled<'py> =
-    (Vec<String>, Py<PyArray1<i64>>, [Py<PyArray2<f64>>; ARRAYS.len()], Option<Py<Robot>>, Vec<PathBuf>);
+    (Vec<String>, Py<PyArray1<i64>>, [Py<PyArray2<f64>>; ARRAYS.len()], Option<Py<Robot>>, Vec<PathBuf>, Learned);
+
+/// Whether the signals are columns of rows; of computed poses, the number of rows with one and without one, and the error of the lengths, m.
+type Learned = (bool, Option<(u64, u64, Option<f64>)>);
 
 /// The arrays of numbers, and their numbers of columns; 0 means one per cable.
 const ARRAYS: [(&str, usize); 8] = [
@@ -75,6 +81,7 @@ impl Log {
             arrays.map(|array| array.clone_ref(py)),
             log.robot.as_ref().map(|robot| robot.clone_ref(py)),
             log.sources.clone(),
+            (log.about.has_columns, log.about.poses.map(|poses| (poses.samples, poses.missing, poses.residual_rms_m))),
         );
         Ok((slf.getattr("_unpickled")?, state))
     }
@@ -88,6 +95,7 @@ impl Log {
         arrays: [Bound<'_, PyAny>; ARRAYS.len()],
         robot: Option<&Robot>,
         sources: Vec<PathBuf>,
+        learned: Learned,
     ) -> Outcome<Self> {
         let entries = "an array of a pickle";
         let stamp_nanos = integers(&Wanted { name: "stamp_nanos", shape: &[Axis::Rows], entries }, stamp_nanos)?;
@@ -111,6 +119,14 @@ impl Log {
             outside_torque_nm: next(),
         };
         let names: Vec<&str> = cable_names.iter().map(String::as_str).collect();
-        Self::new(py, columns, &names, robot.cloned(), sources)
+        let (has_columns, poses) = learned;
+        let poses = poses.map(|(samples, missing, residual_rms_m)| PoseResult {
+            source: FROM_LENGTHS,
+            samples,
+            missing,
+            residual_rms_m,
+        });
+        let log = Self::new(py, columns, &names, robot.cloned(), sources)?;
+        Ok(Self { about: About { has_columns, poses, ..About::default() }, ..log })
     }
 }

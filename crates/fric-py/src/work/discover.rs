@@ -1,9 +1,8 @@
 //! `discover`: finds what a model lacks, from logs.
 
-use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, WhereResult};
-use fric_lab::discover::{CableDiscovery, DiscoverOptions, Discoveries};
-use fric_lab::fit::readiness;
-use fric_lab::fit::{Reference, SampleStore};
+use fric_lab::discover::result::{DiscoverCableResult, WhereResult};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions};
+use fric_work::discover::run;
 use fric_work::provenance::Provenance;
 use fric_work::report::discovery;
 use pyo3::prelude::*;
@@ -11,7 +10,6 @@ use pyo3::prelude::*;
 use crate::arguments::{argument, object, text};
 use crate::arrays::fixed;
 use crate::errors::Outcome;
-use crate::log;
 use crate::results;
 use crate::robot::Robot;
 use crate::watch::Watch;
@@ -66,25 +64,11 @@ pub fn discover(
     let runs = Runs::new(log)?;
     let given = robot.borrow().clone();
     let file = &given.file;
-    log::warn(py, &file.warnings())?;
     let reference = named_reference(reference)?;
     let zero = named_zero(per_log.as_deref(), &runs, reference)?;
-    let lack = readiness::geometry(file, ORIGIN).filter(|_| reference == Reference::Wrench);
-    lack.map_or(Ok(()), |lack| Err(lack.error()))?;
-    let mut samples = SampleStore::new(&file.params(), reference).with_zero_per_log(zero);
-    let holdings = runs.read(robot, &mut samples, &mut watch)?;
-    let readiness = match reference {
-        Reference::Forces => readiness::to_discover(file, &holdings),
-        Reference::Wrench => readiness::to_discover_by_wrench(file, ORIGIN, &holdings),
-    };
-    // Missing data of some cables are reported only beside their verdicts.
-    readiness.check()?;
+    let read = runs.read(robot, file, reference, zero, &mut watch)?;
     let options = DiscoverOptions { empirical, ..DiscoverOptions::default() };
-    let found = watch.fit(|progress| Discoveries::of(&samples, &options, progress))??;
-    let logs: Vec<(String, f64)> = runs.names().into_iter().zip(samples.log_starts_s()).collect();
-    let result = DiscoverResult::new(file, &logs, &readiness, found.cables()).with_wrench(found.wrench());
-    result.check_told()?;
-    log::warn(py, &found.warnings(&file.cable_names()))?;
+    let (result, found) = run(&read, &options, &mut watch)?;
     let text = found.extended(&given.to_toml()?, ORIGIN)?;
     let provenance = Provenance::of_call("fric.discover", &runs.files(), Some((&result.robot, &given.to_toml()?)));
     let page = |provenance: &Provenance| discovery::page(&result, found.cables(), provenance);

@@ -10,6 +10,7 @@ use fric_work::questions::{Request, questions};
 use fric_work::report::RunSeries;
 use fric_work::report::preview::{self, Purpose};
 use fric_work::set_points::SetPointTable;
+use fric_work::supervisor::Supervisor as _;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -123,8 +124,9 @@ pub fn excite(
             let questions = questions(&file, request, cables.as_deref(), noise_n);
             let questions = questions.map_err(|error| Fault::config(format!("`{asked}`: {error}")))?;
             let duration_s = duration_s.unwrap_or(STANDARD_DURATION_S);
-            let Experiment { excitation, forecasts } =
-                watch.fit(|progress| design(&file, &options, duration_s, &questions, progress))??;
+            let Experiment { excitation, forecasts } = watch.compute("designing", "steps", |progress| {
+                design(&file, &options, duration_s, &questions, progress)
+            })??;
             (excitation, Some(Purpose { expectations: expectations(&file.cable_names(), &forecasts), command }))
         }
         None => (py.detach(|| Excitation::new(&file, &options))?, None),

@@ -1,18 +1,13 @@
 //! `fit`: identifies the parameters of the friction model from logs.
 
-use fric_lab::discover::{CorrectedFit, fit_cables_corrected};
-use fric_lab::fit::readiness;
-use fric_lab::fit::result::{FitResult, Fits};
-use fric_lab::fit::{CableFit, FitOptions, Reference, SampleStore, Weighing, fit_wrench, residuals_n, rewritten};
-use fric_work::fit_report;
+use fric_lab::fit::{CableFit, FitOptions, Reference, Weighing};
 use fric_work::provenance::Provenance;
-use fric_work::report;
+use fric_work::{fit::run, fit_report, report};
 use pyo3::prelude::*;
 
 use crate::arguments::{argument, object, text};
 use crate::arrays::{array, fixed};
 use crate::errors::{Fault, Outcome};
-use crate::log;
 use crate::results;
 use crate::robot::Robot;
 use crate::watch::Watch;
@@ -70,36 +65,11 @@ pub fn fit(
     let zero = named_zero(per_log.as_deref(), &runs, reference)?;
     let given = robot.borrow().clone();
     let file = &given.file;
-    log::warn(py, &file.warnings())?;
-    let lack = readiness::geometry(file, ORIGIN).filter(|_| reference == Reference::Wrench);
-    lack.map_or(Ok(()), |lack| Err(lack.error()))?;
-    let mut samples = SampleStore::new(&file.params(), reference).with_zero_per_log(zero);
-    let holdings = runs.read(robot, &mut samples, &mut watch)?;
-    let readiness = match reference {
-        Reference::Forces => readiness::by_forces(file, &holdings),
-        Reference::Wrench => readiness::by_wrench(file, ORIGIN, &holdings),
-    };
-    log::warn(py, &readiness.check()?)?;
-    let (fits, faults, residuals_n) = watch.fit(|progress| -> Outcome<_> {
-        Ok(match reference {
-            Reference::Forces => {
-                let mut left_n = Vec::new();
-                let CorrectedFit { cables, faults } =
-                    fit_cables_corrected(&samples, &options, progress, |of_cable| left_n.push(of_cable))?;
-                (Fits::Forces(cables), faults, left_n)
-            }
-            Reference::Wrench => {
-                let measurements = samples.all()?;
-                let fit = fit_wrench(&measurements, &options, progress)?;
-                let left_n = residuals_n(&measurements, &fit.cables);
-                (Fits::Wrench(fit), Vec::new(), left_n)
-            }
-        })
-    })??;
-    let result = FitResult::new(file, &runs.names(), &fits).with_faults(&faults);
-    log::warn(py, &result.warnings(&fits, &readiness))?;
-    result.check_fitted()?;
-    let text = rewritten(&given.to_toml()?, ORIGIN, fits.cables(), &faults)?;
+    let read = runs.read(robot, file, reference, zero, &mut watch)?;
+    let mut residuals_n = Vec::new();
+    let fitted = run(&read, &options, Some(&mut residuals_n), &mut watch)?;
+    let (result, fits) = (&fitted.result, fitted.fits.cables());
+    let text = fitted.rewritten(&given.to_toml()?, ORIGIN)?;
     let cable = |(fit, residuals_n): (&CableFit, Vec<f64>)| {
         let count = fit.fitted.len();
         // Matrices are stored by columns, arrays by rows.
@@ -108,12 +78,10 @@ pub fn fit(
         let names: Vec<String> = fit.fitted.iter().map(ToString::to_string).collect();
         Ok((names, covariance?, correlation?, fixed(py, residuals_n)))
     };
-    let cables = fits.cables().iter().zip(residuals_n).map(cable).collect::<Outcome<Vec<_>>>()?;
+    let cables = fits.iter().zip(residuals_n).map(cable).collect::<Outcome<Vec<_>>>()?;
     let provenance = Provenance::of_call("fric.fit", &runs.files(), Some((&result.robot, &given.to_toml()?)));
-    let page = |provenance: &Provenance| report::fit::page(&result, fits.cables(), provenance);
-    let shown =
-        results::shown(py, fit_report::summary(&result), &result, page, report::fit::table(&result), &provenance)?;
-    let fields =
-        (shown, fit_report::fit_report(&result, fits.cables()), Py::new(py, Robot::parse(text, ORIGIN)?)?, cables);
+    let page = |provenance: &Provenance| report::fit::page(result, fits, provenance);
+    let shown = results::shown(py, fit_report::summary(result), result, page, report::fit::table(result), &provenance)?;
+    let fields = (shown, fit_report::fit_report(result, fits), Py::new(py, Robot::parse(text, ORIGIN)?)?, cables);
     Ok(results::of(py, "FitResult", fields)?.unbind())
 }

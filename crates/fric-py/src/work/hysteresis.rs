@@ -1,6 +1,6 @@
 //! `hysteresis`: the remaining hysteresis of the wrench.
 
-use fric_lab::hysteresis::{Hysteresis, HysteresisResult, Survey};
+use fric_work::hysteresis::run;
 use fric_work::provenance::Provenance;
 use fric_work::report::hysteresis as report;
 use pyo3::prelude::*;
@@ -33,36 +33,17 @@ pub fn hysteresis(
     watch.part(0, 3);
     let log = log::of(log, robot, None, &mut watch)?;
     let (log, file) = (log.get(), robot.borrow().file.clone());
-    let mut survey = Survey::new(&file)?;
-    let mut cables = Vec::new();
     watch.part(1, 3);
-    log.with_rows(py, |rows| {
-        watch.work(rows.len(), |range| {
-            for row in range {
-                let Some(sample) = rows.sample(row, &mut cables) else { break };
-                survey.add(&sample);
-            }
-            Ok(())
+    let (result, loops) = log.with_source(py, |source| {
+        let again = source.again();
+        run(&file, source, &mut watch, |watch| {
+            watch.part(2, 3);
+            Ok(again)
         })
     })?;
-    let crossed = survey.finish()?;
-    let mut hysteresis = Hysteresis::new(&file, &crossed)?;
-    watch.part(2, 3);
-    log.with_rows(py, |rows| {
-        watch.work(rows.len(), |range| {
-            for row in range {
-                let Some(sample) = rows.sample(row, &mut cables) else { break };
-                hysteresis.step(&sample);
-            }
-            Ok(())
-        })
-    })?;
-    log::warn(py, &file.warnings())?;
-    log::warn(py, &hysteresis.replay().cable_warnings(&file))?;
-    let result = HysteresisResult::new(&file, &crossed, &hysteresis.axes()?);
     let text = robot.borrow().to_toml()?;
     let provenance = Provenance::of_call("fric.hysteresis", &log.sources, Some((&result.robot, &text)));
-    let page = |provenance: &Provenance| report::page(&result, &hysteresis.loops(), provenance);
+    let page = |provenance: &Provenance| report::page(&result, &loops, provenance);
     let shown = results::shown(py, result.summary(), &result, page, report::table(&result), &provenance)?;
     Ok(results::of(py, "HysteresisResult", (shown, <(f64, f64, f64)>::from(result.position_m)))?.unbind())
 }

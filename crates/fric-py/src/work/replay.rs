@@ -2,17 +2,13 @@
 
 use std::path::PathBuf;
 
-use fric_core::RobotParams;
 use fric_lab::columns::OutputColumns;
-use fric_lab::discover::{self, Corrections};
-use fric_lab::fit::{Reference, SampleStore};
-use fric_lab::replay::Replay;
 use fric_log::write::ReplayedLog;
 use fric_work::provenance::Provenance;
 use fric_work::recording_name;
-use fric_work::replay::{CycleTimes, ReplayResult};
+use fric_work::replay::{Replayed, corrections as find_corrections, run};
 use fric_work::report::{Series, errors};
-use pyo3::exceptions::PyRuntimeError;
+use fric_work::source::RowSource;
 use pyo3::prelude::*;
 
 use crate::arguments::{argument, object};
@@ -65,62 +61,27 @@ pub fn replay(
     let text = robot.borrow().to_toml()?;
     let create = |path: PathBuf| ReplayedLog::create(&path, &log.sources, force, &text, &names);
     let mut writer = output.map(create).transpose()?;
-    let corrections = correct.then(|| corrections(py, log, &file.params(), &mut watch)).transpose()?;
-    let params = match corrections.as_ref().and_then(Corrections::length_noise_m) {
-        Some(length_noise_m) => file.params().with_length_noise_m(length_noise_m)?,
-        None => file.params(),
-    };
-    let mut replay = Replay::new(&params)?;
-    let mut room = Vec::new();
-    let mut times = CycleTimes::new()
-        .map_err(|error| PyRuntimeError::new_err(format!("cannot set up the histogram of cycle times: {error}")))?;
+    let mut corrections = |source: &mut RowSource<'_>| find_corrections(&file, source, &mut watch);
+    let corrections = correct.then(|| log.with_source(py, &mut corrections)).transpose()?;
     let mut series = Series::new(names.len());
-    let (mut columns, mut cables) = (OutputColumns::default(), Vec::new());
-    let row_count = log.with_rows(py, |rows| {
-        watch.work(rows.len(), |range| {
-            for row in range {
-                let Some(sample) = rows.sample(row, &mut cables) else { break };
-                let sample = match &corrections {
-                    Some(corrections) => corrections.corrected(row, &sample, &mut room),
-                    None => sample,
-                };
-                let cycle = replay.step(&sample);
-                times.add(cycle.cycle_ns);
-                if let Some(writer) = &mut writer {
-                    writer.write(sample.stamp_nanos, cycle.cables, cycle.outside_wrench.as_ref())?;
-                }
-                series.add(&sample, &cycle);
-                columns.push(cycle.cables, cycle.outside_wrench.as_ref());
+    let (mut columns, mut row_count) = (OutputColumns::default(), 0);
+    let Replayed { result, flags } = log.with_source(py, |source| {
+        run(&file, source, corrections.as_ref(), &mut watch, |sample, cycle| {
+            row_count += 1;
+            if let Some(writer) = &mut writer {
+                writer.write(sample.stamp_nanos, cycle.cables, cycle.outside_wrench.as_ref())?;
             }
+            series.add(sample, cycle);
+            columns.push(cycle.cables, cycle.outside_wrench.as_ref());
             Ok(())
-        })?;
-        Ok(rows.len())
+        })
     })?;
     if let Some(writer) = writer {
         py.detach(|| writer.finish())?;
     }
-    log::warn(py, &replay.warnings(&file, false))?;
-    let result = ReplayResult::new(&file, &replay, &times).with_corrections(corrections.as_ref());
     let provenance = Provenance::of_call("fric.replay", &log.sources, Some((&result.robot, &text)));
     let page = |provenance: &Provenance| errors::page(&result, &series, provenance);
     let shown = results::shown(py, result.summary(), &result, page, errors::table(&result), &provenance)?;
-    let flags: Vec<u32> = replay.cables().iter().map(|errors| errors.flags).collect();
     let cycles = compensation(py, columns, Some(row_count), names.len())?;
     Ok(results::of(py, "ReplayResult", (shown, flags, cycles))?.unbind())
-}
-
-/// Returns the corrections of a log before it is compared with its reference.
-fn corrections(py: Python<'_>, log: &Log, params: &RobotParams<'_>, watch: &mut Watch<'_>) -> Outcome<Corrections> {
-    let mut samples = SampleStore::new(params, Reference::Forces);
-    let mut cables = Vec::new();
-    log.with_rows(py, |rows| {
-        watch.work(rows.len(), |range| {
-            for row in range {
-                let Some(sample) = rows.sample(row, &mut cables) else { break };
-                samples.add(&sample)?;
-            }
-            Ok(())
-        })
-    })?;
-    Ok(watch.fit(|progress| discover::corrections(&samples, progress))??)
 }

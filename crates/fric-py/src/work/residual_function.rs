@@ -1,7 +1,8 @@
 //! `residual_function`: the fit's problem, for other optimisers.
 
 use fric_lab::fit::readiness;
-use fric_lab::fit::{self, FitOptions, KeptFunction, Reference, SampleStore};
+use fric_lab::fit::{self, FitOptions, KeptFunction, Reference};
+use fric_work::supervisor::Supervisor as _;
 use fric_work::verdict::counted;
 use numpy::{PyArray1, PyArray2, PyArrayDyn};
 use pyo3::prelude::*;
@@ -144,7 +145,7 @@ impl ResidualFunction {
     }
 }
 
-/// The starts of the logs, cycle time, time between rows, and whether the reference is known rather than measured.
+/// The starts of the logs, cycle time, time between rows, and whether the reference is known rather than read.
 type Context = (Vec<usize>, f64, f64, bool);
 
 /// Version, robot, cable, names of the parameters, start, context and rows.
@@ -203,13 +204,13 @@ pub fn residual_function(
     let runs = Runs::new(log)?;
     let place = robot.borrow().cable_index(cable)?;
     let file = robot.borrow().file.clone();
-    let mut samples = SampleStore::new(&file.params(), Reference::Forces);
-    let holdings = runs.read(robot, &mut samples, &mut watch)?;
-    let readiness = readiness::by_forces(&file, &holdings);
+    let read = runs.read(robot, &file, Reference::Forces, None, &mut watch)?;
+    let readiness = readiness::by_forces(&file, &read.holdings);
     readiness.lack_of(place).map_or(Ok(()), |lack| Err(lack.error()))?;
-    let measurements = samples.load(place..place + 1)?;
-    let function =
-        watch.fit(|_| measurements.cable(place).map(|record| fit::ResidualFunction::new(&record, &options)))?;
+    let measurements = read.samples.load(place..place + 1)?;
+    let function = watch.compute("preparing", "cables", |_| {
+        measurements.cable(place).map(|record| fit::ResidualFunction::new(&record, &options))
+    })?;
     let function = function.filter(|function| function.count() > 0);
     let nothing = || Fault::fit(format!("no sample of {cable} can be used; `fit` says why"));
     let given = robot.borrow().clone();

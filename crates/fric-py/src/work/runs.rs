@@ -1,9 +1,9 @@
 //! The logs of a fit or a discovery.
 
-use fric_lab::fit::readiness::Holdings;
-use fric_lab::fit::{LogZero, Parameter, Reference, SampleStore, zero_per_log};
-use fric_log::signals::Role;
+use fric_core::robot::file::RobotFile;
+use fric_lab::fit::{LogZero, Parameter, Reference, zero_per_log};
 use fric_work::provenance::shown_path;
+use fric_work::runs::{self, unread};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +12,7 @@ use crate::errors::{Fault, Outcome};
 use crate::log::{self, Log};
 use crate::robot::Robot;
 use crate::watch::Watch;
+use crate::work::fit::ORIGIN;
 
 /// Logs, each a run of its own.
 pub struct Runs<'py>(Vec<Bound<'py, PyAny>>);
@@ -81,38 +82,26 @@ impl<'py> Runs<'py> {
         self.0.iter().flat_map(sources).collect()
     }
 
-    /// Reads all logs into the samples, leaving one more part of the progress to the caller.
-    pub fn read(
+    /// Reads all logs, leaving one more part of the progress to the caller.
+    pub fn read<'a>(
         &self,
         robot: &Bound<'py, Robot>,
-        samples: &mut SampleStore<'_>,
+        file: &'a RobotFile,
+        reference: Reference,
+        zero: Option<LogZero>,
         watch: &mut Watch<'py>,
-    ) -> Outcome<Holdings> {
-        let py = robot.py();
-        let names = samples.robot().cables().len();
-        // Signals that are not compared with are not read.
-        let (unread, compared) = match samples.reference() {
-            Reference::Forces => (Role::Wrench, Role::Reference),
-            Reference::Wrench => (Role::Reference, Role::Wrench),
-        };
-        let mut all = Holdings::new(names);
+    ) -> Outcome<runs::Runs<'a>> {
+        let part_count = self.0.len() as u64 + 1;
+        let mut runs = runs::Runs::new(file, ORIGIN, reference, zero, self.names(), watch)?;
         for (place, item) in self.0.iter().enumerate() {
-            watch.part(place as u64, self.0.len() as u64 + 1);
-            let log = log::of(item, robot, Some(unread), watch)?;
-            let holdings = add(py, log.get(), samples, watch)?;
-            if self.0.len() > 1 && !holdings.has_reference() && holdings.wrenched == 0 {
-                let text = format!(
-                    "log {} of `log` has nothing to compare with on the signal `{}`",
-                    place + 1,
-                    compared.key()
-                );
-                log::warn(py, &[text])?;
-            }
-            all.join(&holdings);
+            watch.part(place as u64, part_count);
+            // Signals that are not compared with are not read.
+            let log = log::of(item, robot, Some(unread(reference)), watch)?;
+            let told = format!("log {} of `log`", place + 1);
+            log.get().with_source(robot.py(), |source| runs.add(&told, source, watch))?;
         }
-        log::warn(py, &samples.warnings(&robot.borrow().file.cable_names())?)?;
-        watch.part(self.0.len() as u64, self.0.len() as u64 + 1);
-        Ok(all)
+        watch.part(part_count - 1, part_count);
+        Ok(runs)
     }
 }
 
@@ -143,29 +132,6 @@ fn span(item: &Bound<'_, PyAny>) -> Outcome<Option<(i64, i64)>> {
 /// Whether two logs overlap in time.
 fn overlap(one: Option<(i64, i64)>, other: Option<(i64, i64)>) -> bool {
     one.zip(other).is_some_and(|((from, to), (other_from, other_to))| from <= other_to && other_from <= to)
-}
-
-/// Adds a log.
-fn add(py: Python<'_>, log: &Log, samples: &mut SampleStore<'_>, watch: &mut Watch<'_>) -> Outcome<Holdings> {
-    let cable_count = samples.robot().cables().len();
-    let (mut holdings, mut cables) = (Holdings::new(cable_count), Vec::new());
-    let unknown = vec![f64::NAN; cable_count];
-    samples.start_log();
-    log.with_rows(py, |rows| {
-        watch.work(rows.len(), |range| {
-            for row in range {
-                let Some(mut sample) = rows.sample(row, &mut cables) else { break };
-                match samples.reference() {
-                    Reference::Forces => sample.outside_wrench = None,
-                    Reference::Wrench => sample.reference_force_n = &unknown,
-                }
-                holdings.add(&sample);
-                samples.add(&sample)?;
-            }
-            Ok(())
-        })
-    })?;
-    Ok(holdings)
 }
 
 /// Returns the zero that each log has of its own, by name.

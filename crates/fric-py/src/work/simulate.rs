@@ -3,6 +3,7 @@
 use fric_core::robot::unknown_name;
 use fric_lab::columns::SampleColumns;
 use fric_lab::simulate::{Disturbance, HiddenEffect, HiddenError, Run, Simulation, SimulationOptions};
+use fric_work::supervisor::Supervisor as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyMapping, PyString};
 

@@ -9,11 +9,12 @@ use fric_tendon_lab::{Run, columns};
 use super::{Model, about, read_table};
 use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
-use crate::measurements::watched;
 use crate::output::{self, JsonTarget, Written};
+use crate::supervision::Watch;
 use crate::warnings::warn_all;
 use fric_work::provenance::shown_path;
 use fric_work::report;
+use fric_work::supervisor::Supervisor as _;
 
 /// Runs the command.
 pub fn run(arguments: &DiscoverArguments) -> Outcome {
@@ -44,7 +45,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let run = Run::from_columns(&table, model.disk_count()).map_err(|error| about(log, error))?;
     let shown = shown_path(log);
     let look = |progress: &Progress| discover(&model.file, &run, &shown, progress);
-    let found = watched("searching", "searches", look)?.map_err(|error| about(log, error))?;
+    let found = Watch::default().compute("searching", "searches", look)?.map_err(|error| about(log, error))?;
     let noise = found.base_noise.map(|noise| noise.warning());
     warn_all(&run.begin_warning().into_iter().chain(noise).collect::<Vec<_>>());
     let mut files = Vec::new();

@@ -6,12 +6,14 @@ use fric_tendon::edit::rewrite;
 use fric_tendon_lab::identify::{Quantity, TendonFitOptions, identify};
 use fric_tendon_lab::{Run, columns};
 use fric_work::provenance::shown_path;
+use fric_work::supervisor::Supervisor as _;
 
 use super::{Model, about, read_table};
 use crate::arguments::continuum::TendonFitArguments;
 use crate::failure::{Failure, Outcome};
-use crate::measurements::{check_named_once, watched};
+use crate::measurements::check_named_once;
 use crate::output::{self, JsonTarget, Written};
+use crate::supervision::Watch;
 use crate::warnings::warn_all;
 
 /// Runs the command.
@@ -37,7 +39,7 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
     }
     let shown: Vec<String> = runs.iter().map(|path| shown_path(path)).collect();
     let fit = |progress: &Progress| identify(&model.file, &measured, &shown, &options, progress);
-    let found = watched("fitting", "searches", fit)?.map_err(|error| match runs.as_slice() {
+    let found = Watch::default().compute("fitting", "searches", fit)?.map_err(|error| match runs.as_slice() {
         [only] => about(only, error),
         _ => Failure::from(error),
     })?;

@@ -10,20 +10,26 @@ use fric_lab::text::{duration, table, wrapped};
 use fric_log::signals::LengthPoses;
 use hdrhistogram::{CreationError, Histogram};
 use serde::Serialize;
+use thiserror::Error;
 
 use crate::verdict::{counted, left_in_words};
 
+/// The error of bounds that a histogram does not accept.
+#[derive(Debug, Error)]
+#[error("cannot set up the histogram of cycle times: {0}")]
+pub struct NoHistogram(#[from] CreationError);
+
 /// Cycle times in bounded memory.
 #[derive(Clone, Debug)]
-pub struct CycleTimes(Histogram<u64>);
+pub(super) struct CycleTimes(Histogram<u64>);
 
 impl CycleTimes {
     /// Creates an empty histogram. Three digits are kept; durations beyond 2^40 ns (18 minutes) count as that.
     ///
     /// # Errors
     /// Returns the errors of [`Histogram::new_with_max`], which accepts these bounds.
-    pub fn new() -> Result<Self, CreationError> {
-        Histogram::new_with_max(1 << 40, 3).map(Self)
+    pub fn new() -> Result<Self, NoHistogram> {
+        Ok(Self(Histogram::new_with_max(1 << 40, 3)?))
     }
 
     /// Adds a cycle.
@@ -77,6 +83,12 @@ impl PoseResult {
         }
     }
 
+    /// Returns the same for a part of the log with `samples` rows, of which `missing` have no pose; the error of its lengths is not known.
+    #[must_use]
+    pub fn of_part(self, samples: u64, missing: u64) -> Self {
+        Self { samples: samples - missing, missing, residual_rms_m: None, ..self }
+    }
+
     /// Returns a line for people.
     fn line(&self) -> String {
         let residual =
@@ -126,25 +138,31 @@ impl ReplayResult {
     /// Name and version of the format.
     pub const FORMAT: &str = "fric-replay/1";
 
-    /// Creates the result of a finished replay.
-    #[must_use]
-    pub fn new(robot: &RobotFile, replay: &Replay, times: &CycleTimes) -> Self {
-        let cable = |(name, errors): (&str, &CableErrors)| CableResult {
+    /// Creates the result of a finished replay, with the poses that were computed and the corrections of the log.
+    pub(super) fn new(
+        robot: &RobotFile,
+        replay: &Replay,
+        times: &CycleTimes,
+        pose: Option<PoseResult>,
+        corrections: Option<&Corrections>,
+    ) -> Self {
+        let faults = |place: usize| corrections.map_or(&[][..], |corrections| corrections.faults(place));
+        let cable = |(place, (name, errors)): (usize, (&str, &CableErrors))| CableResult {
             name: name.to_owned(),
             samples: replay.cycle_count(),
             flagged: errors.flagged_count,
             is_measured: errors.is_measured(),
             before: ForceError::of(&errors.before_n).filter(|_| errors.is_measured()),
             after: ForceError::of(&errors.after_n).filter(|_| errors.is_measured()),
-            faults: Vec::new(),
+            faults: faults(place).iter().map(FaultResult::of).collect(),
         };
         let (before, after) = replay.wrench();
         Self {
             format: Self::FORMAT,
             robot: robot.options().name.clone(),
-            cables: robot.cable_names().into_iter().zip(replay.cables()).map(cable).collect(),
+            cables: robot.cable_names().into_iter().zip(replay.cables()).enumerate().map(cable).collect(),
             wrench: WrenchResult::of(replay.wrench_reference(), before, after),
-            pose: None,
+            pose,
             cycle: CycleResult {
                 count: replay.cycle_count(),
                 median_ns: times.0.value_at_quantile(0.5),
@@ -152,22 +170,6 @@ impl ReplayResult {
                 max_ns: times.0.max(),
             },
         }
-    }
-
-    /// Adds the poses that were computed from the cable lengths.
-    #[must_use]
-    pub fn with_poses(self, poses: Option<&LengthPoses>) -> Self {
-        Self { pose: poses.map(PoseResult::of), ..self }
-    }
-
-    /// Adds the corrections of the log.
-    #[must_use]
-    pub fn with_corrections(mut self, corrections: Option<&Corrections>) -> Self {
-        for (place, cable) in self.cables.iter_mut().enumerate() {
-            let faults = corrections.map_or(&[][..], |corrections| corrections.faults(place));
-            cable.faults = faults.iter().map(FaultResult::of).collect();
-        }
-        self
     }
 
     /// Returns a table for people, at most 80 columns wide.
