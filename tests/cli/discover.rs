@@ -350,10 +350,6 @@ fn motion_that_tells_nothing_is_told() {
     let log = simulated(&bench_robot(), &["--duration", "12", "--seed", "4"]);
     let place = with(moved(&log, |sample| [1.0 + 1e-5 * sample as f64, 0.01]));
     refused(&place, &[]).fails(1, &["winch", "never reverses"]).advises(&["both directions", "fric-cli excite"]);
-    let to_and_fro = |sample: usize| {
-        let phase = sample % 2000;
-        if phase < 1000 { [1.0 + 5e-5 * phase as f64, 0.05] } else { [1.1 - 5e-5 * phase as f64, -0.05] }
-    };
     refused(&with(moved(&log, |_| [1.0, 0.0])), &[]).fails(1, &["winch never changes"]).advises(&["both directions"]);
     let trembling = |sample: usize| [1.0 + 1e-7 * (sample % 2) as f64, 0.0];
     refused(&with(moved(&log, trembling)), &[]).fails(1, &["it rests"]).advises(&["longer strokes"]);

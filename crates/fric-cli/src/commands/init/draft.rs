@@ -130,7 +130,8 @@ impl Draft {
                 self.sigma_n_per_m = sigma_n_per_m;
             }
         } else {
-            self.notes.push("cycle_s could not be found: no two samples could be read with what was guessed".to_owned());
+            self.notes
+                .push("cycle_s could not be found: no two samples could be read with what was guessed".to_owned());
         }
     }
 
