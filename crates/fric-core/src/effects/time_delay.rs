@@ -335,3 +335,24 @@ impl About {
         number(|about| about.value) + number(|about| about.slopes[0]) * once + number(|about| about.slopes[1]) * twice
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Delay, DelayLine};
+
+    /// The sum of what a lead returns is ahead of the sum of what it was given: below one cycle by the last values, beyond by those of its taps.
+    #[test]
+    fn a_lead_is_ahead_by_the_sum_of_what_it_added() {
+        for lead_cycles in [0.3, 0.99, 1.0, 4.6, 20.0] {
+            let (mut line, delay) = (DelayLine::EMPTY, Delay::from_cycles(-lead_cycles));
+            let (mut given, mut led) = (0.0, 0.0);
+            for cycle in 0_u8..150 {
+                // At rest at first, as every line begins.
+                let value = if cycle < 60 { 0.0 } else { (0.2 * f64::from(cycle)).sin() };
+                given += value;
+                led += line.shift(value, true, delay);
+                assert!((line.lead(delay) - (led - given)).abs() < 1e-10, "{lead_cycles} cycles, cycle {cycle}");
+            }
+        }
+    }
+}
