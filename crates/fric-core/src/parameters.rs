@@ -26,6 +26,28 @@ pub struct ParameterRow {
     pub excitation: &'static str,
 }
 
+impl ParameterRow {
+    /// Creates the row of a parameter that an identification varies, from its key, its unit, its least, neutral and greatest value, and what identifies it.
+    pub(crate) const fn fitted(
+        key: &'static str,
+        unit: &'static str,
+        [min, neutral, max]: [f64; 3],
+        excitation: &'static str,
+    ) -> Self {
+        Self { key, unit, neutral, min, max, fitted: true, excitation }
+    }
+
+    /// Creates the row of a parameter that is a setting, or found by other means; see [`fitted`](Self::fitted).
+    pub(crate) const fn setting(
+        key: &'static str,
+        unit: &'static str,
+        range: [f64; 3],
+        excitation: &'static str,
+    ) -> Self {
+        Self { fitted: false, ..Self::fitted(key, unit, range, excitation) }
+    }
+}
+
 /// Represents "no presliding": motion of a picometre reverses any friction.
 pub const NO_PRESLIDING_N_PER_M: f64 = 1e15;
 /// `2 − μk` of \[P\] 10 stays well above zero for every wrap.
@@ -33,42 +55,30 @@ pub const GREATEST_MU: f64 = 0.9;
 
 /// Parameters of the robot file's `friction`, the vector p of \[P\] 18.
 pub const FRICTION: [ParameterRow; FRICTION_COUNT] = [
-    ParameterRow {
-        key: "mu",
-        unit: "1",
-        neutral: 0.0,
-        min: 0.0,
-        max: GREATEST_MU,
-        fitted: true,
-        excitation: "motion of the cable in both directions, each time much further than its presliding distance",
-    },
-    ParameterRow {
-        key: "sigma_n_per_m",
-        unit: "N/m",
-        neutral: NO_PRESLIDING_N_PER_M,
-        min: 1e-3,
-        max: 1e12,
-        fitted: true,
-        excitation: "small movements that reverse: steps of 0.25 … 10 mm there and back, with breaks",
-    },
-    ParameterRow {
-        key: "viscous_n_s_per_m",
-        unit: "N s/m",
-        neutral: 0.0,
-        min: 0.0,
-        max: 1e6,
-        fitted: true,
-        excitation: "fast motion beside slow: strokes at several speeds up to the highest",
-    },
-    ParameterRow {
-        key: "offset_n",
-        unit: "N",
-        neutral: 0.0,
-        min: -1e6,
-        max: 1e6,
-        fitted: true,
-        excitation: "long movements in both directions, with a force sensor at the platform or poses throughout the workspace",
-    },
+    ParameterRow::fitted(
+        "mu",
+        "1",
+        [0.0, 0.0, GREATEST_MU],
+        "motion of the cable in both directions, each time much further than its presliding distance",
+    ),
+    ParameterRow::fitted(
+        "sigma_n_per_m",
+        "N/m",
+        [1e-3, NO_PRESLIDING_N_PER_M, 1e12],
+        "small movements that reverse: steps of 0.25 … 10 mm there and back, with breaks",
+    ),
+    ParameterRow::fitted(
+        "viscous_n_s_per_m",
+        "N s/m",
+        [0.0, 0.0, 1e6],
+        "fast motion beside slow: strokes at several speeds up to the highest",
+    ),
+    ParameterRow::fitted(
+        "offset_n",
+        "N",
+        [-1e6, 0.0, 1e6],
+        "long movements in both directions, with a force sensor at the platform or poses throughout the workspace",
+    ),
 ];
 /// Number of parameters of the robot file's `friction`.
 pub const FRICTION_COUNT: usize = 4;

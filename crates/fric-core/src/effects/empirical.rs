@@ -30,11 +30,11 @@ pub const SHARES: usize = 12;
 const EXCITATION: &str = "movements over all of the range of the table's condition, at several speeds and loads";
 
 const fn setting(key: &'static str, unit: &'static str, most: f64) -> ParameterRow {
-    ParameterRow { key, unit, neutral: 0.0, min: -most, max: most, fitted: false, excitation: EXCITATION }
+    ParameterRow::setting(key, unit, [-most, 0.0, most], EXCITATION)
 }
 
 const fn size(key: &'static str, unit: &'static str, most: f64) -> ParameterRow {
-    ParameterRow { fitted: true, ..setting(key, unit, most) }
+    ParameterRow::fitted(key, unit, [-most, 0.0, most], EXCITATION)
 }
 
 /// The catalogue row.

@@ -258,15 +258,8 @@ pub const MEMORY: usize = LAST.memory_places().end;
 /// then not selected, which a compiler may do unasked, are no invalid operations.
 pub const UNKNOWN: f64 = 1e200;
 /// The row of `until_s` of an effect that depends on time: a drift observed in one run does not continue forever.
-const UNTIL_ROW: ParameterRow = ParameterRow {
-    key: "until_s",
-    unit: "s",
-    neutral: 0.0,
-    min: 0.0,
-    max: 1e9,
-    fitted: false,
-    excitation: "the run itself: it is as long as this",
-};
+const UNTIL_ROW: ParameterRow =
+    ParameterRow::setting("until_s", "s", [0.0, 0.0, 1e9], "the run itself: it is as long as this");
 
 /// Returns the time that a drift depends on, s: that of the run, up to `until_s`; without end if that is 0.
 #[inline(always)]

@@ -21,9 +21,9 @@ pub(super) const fn rows(
     excitation: &'static str,
 ) -> [ParameterRow; 3] {
     [
-        ParameterRow { key: sin, unit, neutral: 0.0, min: -most, max: most, fitted: true, excitation },
-        ParameterRow { key: cos, unit, neutral: 0.0, min: -most, max: most, fitted: true, excitation },
-        ParameterRow { key: PERIOD_KEY, unit: "m", neutral: 0.1, min: 1e-4, max: 100.0, fitted: false, excitation },
+        ParameterRow::fitted(sin, unit, [-most, 0.0, most], excitation),
+        ParameterRow::fitted(cos, unit, [-most, 0.0, most], excitation),
+        ParameterRow::setting(PERIOD_KEY, "m", [1e-4, 0.1, 100.0], excitation),
     ]
 }
 
