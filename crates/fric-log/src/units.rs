@@ -29,7 +29,7 @@ pub enum Unit {
 const GRAVITY: f64 = 9.80665;
 
 /// Units of the signals. Of two that differ in upper and lower case alone the first stands for other spellings.
-const UNITS: [(&str, Quantity, f64); 43] = [
+const UNITS: [(&str, Quantity, f64); 47] = [
     ("s", Quantity::Time, 1.0),
     ("sec", Quantity::Time, 1.0),
     ("seconds", Quantity::Time, 1.0),
@@ -72,15 +72,19 @@ const UNITS: [(&str, Quantity, f64); 43] = [
     ("mm/s", Quantity::Speed, 1e-3),
     ("m/min", Quantity::Speed, 1.0 / 60.0),
     ("m_per_s", Quantity::Speed, 1.0),
+    ("m_s", Quantity::Speed, 1.0),
+    ("mps", Quantity::Speed, 1.0),
+    ("cm_s", Quantity::Speed, 1e-2),
+    ("mm_s", Quantity::Speed, 1e-3),
     ("mm_per_s", Quantity::Speed, 1e-3),
 ];
 /// It is also the symbol of time: `delta_t` and `log/t` have no unit.
 const TONNE: &str = "t";
 
 /// Units of what is none of the signals.
-const OTHER_UNITS: [&str; 28] = [
-    "nm", "n·m", "n m", "ncm", "rev", "rpm", "1/min", "u/min", "deg", "°", "rad", "deg/s", "°/s", "rad/s", "v", "mv",
-    "mv/v", "a", "ma", "w", "°c", "k", "%", "hz", "bar", "pa", "counts", "inc",
+const OTHER_UNITS: [&str; 30] = [
+    "nm", "n·m", "n m", "ncm", "rev", "rpm", "1/min", "u/min", "deg", "°", "rad", "deg/s", "°/s", "rad/s", "deg_s",
+    "rad_s", "v", "mv", "mv/v", "a", "ma", "w", "°c", "k", "%", "hz", "bar", "pa", "counts", "inc",
 ];
 /// Stand for no unit.
 const NO_UNIT: [&str; 3] = ["", "-", "1"];
@@ -139,9 +143,11 @@ impl<'a> Head<'a> {
         let is_of_signal = |unit: &str| unit != TONNE && matches!(Unit::of(unit), Some(Unit::Of(..)));
         // `rig/v` may be a speed.
         let is_divisor = |unit: &str| is_of_signal(unit) || unit.len() > 1 && Unit::of(unit).is_some();
+        // The second word of `rad_s` alone is a unit of time.
+        let is_end = |unit: &str| is_of_signal(unit) || unit.contains('_') && Unit::of(unit).is_some();
         bracketed()
             .or_else(|| behind('/', &is_divisor))
-            .or_else(|| behind('_', &is_of_signal))
+            .or_else(|| behind('_', &is_end))
             .unwrap_or(Self { name: column, unit: None })
     }
 }
@@ -195,6 +201,9 @@ mod tests {
             ("Winde 1/Kraft/kN", "Winde 1/Kraft", Some("kN")),
             ("speed_2_mm_per_s", "speed_2", Some("mm_per_s")),
             ("F_MN", "F", Some("MN")),
+            ("speed_m_s", "speed", Some("m_s")),
+            ("motor_rad_s", "motor", Some("rad_s")),
+            ("run_time_s", "run_time", Some("s")),
             ("/joint/position", "/joint/position", None),
             ("delta_t", "delta_t", None),
             ("rig/v", "rig/v", None),

@@ -39,6 +39,8 @@ pub struct Runs<'a> {
     /// The number of samples with each signal.
     pub holdings: Holdings,
     read_count: usize,
+    /// The last warning about the cycle, which logs of one machine share.
+    cycle_warning: Option<String>,
     /// Required signals whose times are apart from those of the cable signal in every log.
     all_apart: Vec<Role>,
     /// The first of them, in the last log.
@@ -77,6 +79,7 @@ impl<'a> Runs<'a> {
             samples: SampleStore::new(&params, reference).with_zero_per_log(zero),
             holdings: Holdings::new(params.cables().len()),
             read_count: 0,
+            cycle_warning: None,
             all_apart: required.into_iter().filter(is_needed).collect(),
             apart: None,
         })
@@ -107,7 +110,10 @@ impl<'a> Runs<'a> {
             holdings.add(&sample);
             Ok(samples.add(&sample)?)
         })?;
-        watch.warn(about.cycle.as_slice())?;
+        if about.cycle.is_some() && about.cycle != self.cycle_warning {
+            watch.warn(about.cycle.as_slice())?;
+            self.cycle_warning = about.cycle.clone();
+        }
         self.all_apart.retain(|role| about.times_apart(*role).is_some());
         self.apart = self.all_apart.first().and_then(|role| about.times_apart(*role));
         if names.len() > 1 && !holdings.has_reference() && holdings.wrenched == 0 {

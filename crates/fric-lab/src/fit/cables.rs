@@ -235,14 +235,20 @@ pub fn used(standings: &[Standing]) -> Vec<bool> {
 }
 
 /// Leaves out the start of each log, where the presliding still depends on the time before, estimated from the best start values. If one cable of
-/// several never settles, its stored force stays constant and adds to its offset; the other cables can still be identified.
+/// several never settles, its stored force stays constant and adds to its offset; the other cables can still be identified. Where no sample would be left, as
+/// of a motion one way that says nothing about the presliding, the robot file's values decide.
 pub(crate) fn leave_out_warm_up(problem: &Problem<'_>, starts: &[Vec<Values>], standings: &mut [Standing]) {
     let best = starts.first().into_iter().flatten();
     for (member, values) in problem.members.iter().zip(best) {
-        let mut left = standings.to_vec();
-        selection::leave_out_warm_up(&member.record, values, &mut left);
-        if problem.members.len() == 1 || left.contains(&Standing::Used) {
-            standings.copy_from_slice(&left);
+        let given = member.record.params.values();
+        let left = [values, &given].map(|values| {
+            let mut left = standings.to_vec();
+            selection::leave_out_warm_up(&member.record, values, &mut left);
+            left
+        });
+        let settled = left.iter().find(|left| left.contains(&Standing::Used));
+        if let Some(left) = settled.or(left.first().filter(|_| problem.members.len() == 1)) {
+            standings.copy_from_slice(left);
         }
     }
 }

@@ -130,6 +130,15 @@ pub fn time<'a>(record: &CableRecord<'a>) -> Condition<'a> {
     Condition::new(record, ("time", "s", Spacing::Crowds(BINS)), move |cycle| of_cycle.time_s(cycle))
 }
 
+/// Returns the number of the log as a condition, over which an effect of the machine has one size; `None` for a single log.
+pub fn log<'a>(record: &CableRecord<'a>) -> Option<Condition<'a>> {
+    let starts: Vec<usize> = record.logs().map(|(start, _)| start).collect();
+    let bins = Spacing::Widths(starts.len().min(BINS));
+    #[expect(clippy::cast_precision_loss, reason = "a small count")]
+    let number = move |cycle: usize| starts.partition_point(|start| *start <= cycle) as f64;
+    (record.logs().count() > 1).then(|| Condition::new(record, ("log", "1", bins), number))
+}
+
 /// Returns the root mean square of the speed, m/s.
 fn usual_speed_m_per_s(record: &CableRecord<'_>) -> f64 {
     let mut speed = Deviation::default();

@@ -1,5 +1,7 @@
 //! Compares the motion of a log with itself: the speed of each cable with the change of its length, and the length with that of the poses.
 
+use std::f64::consts::PI;
+
 use fric_core::{CableParams, Pose, RobotParams, Sample};
 
 use crate::text::{listed, significant};
@@ -14,6 +16,9 @@ const LONGEST_GAP_S: f64 = 0.5;
 const BEYOND_ERRORS: f64 = 1.3;
 /// Least squared correlation of two measures of one motion. Half and twice as much unexplained gives the same of cables that stand still.
 const LEAST_CORRELATION: f64 = 0.5;
+/// The same of a speed and a change of the length without its sign, which reversals within a step make differ. A column that is always positive and has nothing
+/// to do with the speed reaches two thirds.
+const NEARLY_PROPORTIONAL: f64 = 0.9;
 /// The same of two lengths that differ by a factor alone.
 const PROPORTIONAL: f64 = 0.99;
 /// Least change of the length in a step, rms, m, and least range and deviation of a length, m: below, noise and stretch may be as large.
@@ -34,11 +39,13 @@ const MOST_LATE: f64 = 0.1;
 const DERIVE: &str = "`speed = \"lengths\"` under `[log]` derives it from the length, as for a log without a speed";
 
 /// Usual ratios of a speed to the change of the length.
-const SPEED_CAUSES: [(f64, &str); 5] = [
+const SPEED_CAUSES: [(f64, &str); 7] = [
     (1e3, "a speed in mm/s"),
     (1e-3, "a length in mm"),
     (1e-2, "a length in cm"),
     (60.0, "a speed per minute"),
+    (180.0 / PI, "a speed in degrees beside a length in radians"),
+    (PI / 180.0, "a length in degrees beside a speed in radians"),
     (-1.0, "the other sign: both are positive while the cable is paid out"),
 ];
 /// Usual ratios of a length to that of the poses.
@@ -106,9 +113,10 @@ impl<const COUNT: usize> Sums<COUNT> {
     }
 }
 
-/// Quantities of a step: the way by the speed and by the length, m.
+/// Quantities of a step: the way by the speed and by the length, and the latter without its sign, m.
 const BY_SPEED: usize = 0;
 const BY_LENGTH: usize = 1;
+const UNSIGNED: usize = 2;
 /// Quantities of a step between two others: the way by the length that the speed lacks, m, the change of the length's rate, and the rate, m/s. A speed
 /// that is late by a time lacks that time's part of the change.
 const LACKED: usize = 0;
@@ -128,7 +136,9 @@ struct CableMotion {
     has_jumped: bool,
     /// Time since the present step began, s, and the ways in it.
     step: (f64, [f64; 2]),
-    steps: Sums<2>,
+    steps: Sums<3>,
+    /// Whether any way by the speed is negative.
+    has_negative_speed: bool,
     /// The two steps before it: time, s, and ways, m.
     past: [Option<(f64, [f64; 2])>; 2],
     between: Sums<3>,
@@ -259,7 +269,9 @@ impl CableMotion {
             return None;
         }
         let (lasted_s, ways_m) = std::mem::take(&mut self.step);
-        self.steps.add(ways_m);
+        let [by_speed_m, by_length_m] = ways_m;
+        self.steps.add([by_speed_m, by_length_m, by_length_m.abs()]);
+        self.has_negative_speed |= by_speed_m < 0.0;
         if let [Some((first_s, first)), Some((middle_s, middle))] = self.past {
             let [from_m_per_s, to_m_per_s] = [
                 (first[BY_LENGTH] + middle[BY_LENGTH]) / (first_s + middle_s),
@@ -288,13 +300,20 @@ impl CableMotion {
         if steps.products[BY_SPEED][BY_SPEED] == 0.0 {
             return Some(format!("the speed is 0 throughout, though the length changes. {DERIVE}"));
         }
+        // Of the whole way, what goes back.
+        let back_m = 0.5 * (steps.totals[UNSIGNED] - steps.totals[BY_LENGTH].abs());
+        let goes_back = back_m > LEAST_VARIATION_M.max(MOST_OFF * steps.totals[UNSIGNED]);
+        if !self.has_negative_speed && goes_back && steps.ratio(BY_SPEED, UNSIGNED, NEARLY_PROPORTIONAL).is_some() {
+            return Some(format!("the speed has no sign: it is positive both ways. {DERIVE}"));
+        }
         let ratio = steps.ratio(BY_SPEED, BY_LENGTH, LEAST_CORRELATION)?;
         // Noise of either makes one of the two slopes too low and the other too high.
         let both = steps.products[BY_SPEED][BY_LENGTH];
         let slopes = [both / steps.products[BY_LENGTH][BY_LENGTH], steps.products[BY_SPEED][BY_SPEED] / both];
         let is_beyond = slopes.iter().all(|slope| *slope > BEYOND_ERRORS)
             || slopes.iter().all(|slope| *slope < BEYOND_ERRORS.recip());
-        let likely = cause(&SPEED_CAUSES, ratio).unwrap_or("another unit; both are in metres and seconds");
+        let likely = cause(&SPEED_CAUSES, ratio)
+            .unwrap_or("another unit, or times at another rate; all are in metres and seconds");
         if is_beyond {
             return Some(format!(
                 "the speed is {} times the change of the length in a second; the likely cause is {likely}. {DERIVE}",
@@ -348,7 +367,9 @@ impl CableMotion {
 }
 
 fn cause(causes: &[(f64, &'static str)], ratio: f64) -> Option<&'static str> {
-    causes.iter().find(|(of, _)| (ratio / of - 1.0).abs() < OF_CAUSE).map(|(_, cause)| *cause)
+    let off = |of: f64| (ratio / of - 1.0).abs();
+    let nearest = causes.iter().min_by(|(one, _), (other, _)| off(*one).total_cmp(&off(*other)))?;
+    (off(nearest.0) < OF_CAUSE).then_some(nearest.1)
 }
 
 #[cfg(test)]
@@ -429,6 +450,7 @@ mod tests {
             (warnings(|length_m, speed| (length_m, -speed), now), "the speed is -1 times"),
             (warnings(|length_m, speed| (length_m, 1e3 * speed), now), "a speed in mm/s"),
             (warnings(|length_m, _| (length_m, 0.0), now), "the speed is 0 throughout"),
+            (warnings(|length_m, speed| (length_m, speed.to_degrees()), now), "a speed in degrees"),
             (warnings(|length_m, speed| (-length_m, -speed), now), "a length of the other sign"),
             (warnings(|length_m, speed| (2.0 * length_m, 2.0 * speed), now), "a block that halves the motion"),
             (warnings(|length_m, speed| (1e3 * length_m, 1e3 * speed), now), "a length in mm"),
@@ -452,19 +474,19 @@ mod tests {
         assert!(warning.contains("cable8: the changes of the length are not those"), "{warning}");
     }
 
-    /// The warnings about a log at 100 Hz in which each length swings once in 2 s, and the speed is late by a time.
-    fn of_late_speed(late_s: f64) -> Vec<String> {
+    /// The warnings about a log at 100 Hz in which each length swings once in 2 s; `shown` is the speed, at a time, of a cable with this one.
+    fn of_shown_speed(shown: impl Fn(&dyn Fn(f64) -> f64, f64) -> f64) -> Vec<String> {
         let robot = RobotFile::parse(EXAMPLE, "example").unwrap();
         let mut motions = Motions::new(&robot.params());
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut noise = move || -> f64 { StandardNormal.sample(&mut random) };
+        let speed_m_per_s = |time_s: f64| 0.1 * PI * (PI * time_s).cos();
         for row in 0..3000_u32 {
             let time_s = 0.01 * f64::from(row);
             let cable = CableInput {
                 sensor_force_n: 1.0,
-                length_m: 0.1 * (std::f64::consts::PI * time_s).sin() + 5e-5 * noise(),
-                speed_m_per_s: 0.1 * std::f64::consts::PI * (std::f64::consts::PI * (time_s - late_s)).cos()
-                    + 2e-3 * noise(),
+                length_m: 0.1 * (PI * time_s).sin() + 5e-5 * noise(),
+                speed_m_per_s: shown(&speed_m_per_s, time_s),
             };
             motions.add(&Sample {
                 stamp_nanos: i64::from(row) * 10_000_000,
@@ -479,6 +501,7 @@ mod tests {
 
     #[test]
     fn a_speed_that_is_late_or_early_is_reported_with_its_time() {
+        let of_late_speed = |late_s: f64| of_shown_speed(|speed, time_s| speed(time_s - late_s));
         // Off by π·0.05 = 0.16 of the speed. Rates over steps of a tenth of a second make the time some percent too long.
         for (late_s, word) in [(0.05, "late"), (-0.05, "early")] {
             let [warning] = &*of_late_speed(late_s) else { panic!("no warning for {late_s} s") };
@@ -488,6 +511,14 @@ mod tests {
         }
         // The difference of two lengths is late by half a sample.
         assert_eq!([0.0, 0.005, 0.02].map(of_late_speed), [const { Vec::<String>::new() }; 3]);
+    }
+
+    #[test]
+    fn a_speed_without_a_sign_is_reported() {
+        let [warning] = &*of_shown_speed(|speed, time_s| speed(time_s).abs()) else { panic!("no warning") };
+        assert!(warning.contains("the speed has no sign"), "{warning}");
+        // A current, say.
+        assert_eq!(of_shown_speed(|_, time_s| 1.0 + (3.0 * time_s).sin()), [""; 0]);
     }
 
     /// Two logs, of which the second has the other sign: the first does not make up for it.

@@ -48,8 +48,18 @@ struct Line<'a> {
 }
 
 impl Form {
-    /// Determines the form of a file that begins with these bytes; `None` if there are only comments.
+    /// Determines the form of a file that begins with these bytes; `None` if there are only comments. A filled column without a name gets that of its place.
     pub fn find(beginning: &[u8]) -> Option<Self> {
+        let mut form = Self::as_written(beginning)?;
+        for (place, (name, cell)) in (1..).zip(form.names.iter_mut().zip(&form.first_row)) {
+            if name.is_empty() && !cell.is_empty() {
+                *name = format!("column {place}");
+            }
+        }
+        Some(form)
+    }
+
+    fn as_written(beginning: &[u8]) -> Option<Self> {
         let mut separators = SEPARATORS.to_vec();
         let mut comment = None;
         let mut filled: Vec<Line<'_>> = Vec::new();
@@ -278,6 +288,8 @@ mod tests {
         );
         assert_eq!(named("# t \"F [N]\"\n1 2\n"), expected(' ', "t|F [N]", "1 2\n", 2));
         assert_eq!(named("Force in N;t\n1;2\n3;4\n"), expected(';', "Force in N|t", "1;2\n3;4\n", 2));
+        // A separator at the end of the lines makes an empty column, an index of rows a filled one.
+        assert_eq!(form(";a;b;\nms;N;m;\n0;1;2;\n").names, ["column 1", "a", "b", ""]);
         assert_eq!(form("a b\n1 2\n3\n4 5\n").names, ["a b"]);
         // Channels named by numbers.
         assert_eq!(named("t;1;2\n0;5;6\n1;5;6\n"), expected(';', "t|1|2", "0;5;6\n1;5;6\n", 2));
@@ -320,7 +332,7 @@ mod tests {
         assert_eq!(form(&format!("{padded}t;F;l\ns;N;m\n{row}")), expected(';', "t|F|l", "s|N|m", row, 6));
         // Rows without names, and with an event in some.
         let rows = "0,0.00,5.0,1.0,start\n1,0.01,5.1,1.0,\n2,0.02,5.2,1.0,\n";
-        assert_eq!(form(&format!(",time_s,F,l,event\n{rows}")), expected(',', "|time_s|F|l|event", "", rows, 2));
+        assert_eq!(form(&format!(",time_s,F,l,event\n{rows}")), expected(',', "column 1|time_s|F|l|event", "", rows, 2));
         // Times that are dates, and text in every row.
         let rows = "2024-05-03 12:00:00.001\t5.3\tok\n2024-05-03 12:00:00.002\t5.4\tok\n";
         assert_eq!(form(&format!("a\tb\tc\n{rows}")), expected('\t', "a|b|c", "", rows, 2));

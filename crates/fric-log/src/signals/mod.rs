@@ -186,6 +186,13 @@ impl SignalPaths {
         self.speed_is_from_lengths
     }
 
+    /// Returns the paths for a table, whose rows contain lengths and speeds with the forces.
+    pub(self) fn of_table(mut self) -> Self {
+        self.paths[Role::Length as usize] = None;
+        self.paths[Role::Speed as usize] = None;
+        self
+    }
+
     /// Sets the columns of a CSV log whose names differ from the defaults, by the keys of `[log.columns]`.
     #[must_use]
     pub fn with_columns(self, columns: BTreeMap<String, ColumnTable>) -> Self {

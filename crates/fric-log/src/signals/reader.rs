@@ -106,9 +106,7 @@ impl SignalReader {
     #[must_use]
     pub fn new(log: impl Into<Log>, paths: SignalPaths, cable_names: &[impl AsRef<str>]) -> Self {
         let log = log.into();
-        // Rows of a table contain lengths and speeds with the forces.
-        let is_table = log.column_names().is_some();
-        let paths = if is_table { paths.with(Role::Length, None).with(Role::Speed, None) } else { paths };
+        let paths = if log.column_names().is_some() { paths.of_table() } else { paths };
         let topics = Topics {
             is_awaited: Role::ALL.map(|role| paths.get(role).is_some()),
             cable_names: cable_names.iter().map(|name| name.as_ref().to_owned()).collect(),

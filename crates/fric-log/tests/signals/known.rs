@@ -1,9 +1,12 @@
 //! References that are known and not measured.
 
-use fric_core::Sample;
+use std::path::Path;
+
 use fric_core::robot::file::RobotFile;
+use fric_core::{CableInput, Sample};
 use fric_log::recording::Recording;
-use fric_log::signals::{SignalPaths, SignalReader, StatedSignals};
+use fric_log::signals::{Role, SignalPaths, SignalReader, StatedSignals};
+use tempfile::TempDir;
 
 use super::support::{JOINT_STATES, Log, MS, S, joints};
 
@@ -105,8 +108,12 @@ fn rows_come_whole_and_in_order_over_gaps_and_a_clock_that_is_set_back() {
     assert!((3 * 18..=3 * 24).contains(&count), "{count}");
 }
 
+fn cables_only() -> SignalPaths {
+    SignalPaths::default().with(Role::Cable, Some("/cables".parse().unwrap()))
+}
+
 /// Returns the bits of each row's length, speed and reference; through a log, and from samples that are no log's.
-fn speeds(log: &Log, of_log: &str) -> [Vec<[u64; 3]>; 2] {
+fn speeds(path: &Path, of_log: &str) -> [Vec<[u64; 3]>; 2] {
     let text = |of_log: &str| {
         format!(
             "format = 'fric-robot/1'\nname = 'bench'\ncycle_s = 0.001\n[log]\ncable = '/cables'\n{of_log}\n[[cable]]\nname = 'a'\n\
@@ -114,7 +121,7 @@ fn speeds(log: &Log, of_log: &str) -> [Vec<[u64; 3]>; 2] {
         )
     };
     let paths = |of_log| SignalPaths::of_robot(&RobotFile::parse(&text(of_log), "bench").unwrap()).unwrap();
-    let reader = |paths| SignalReader::new(Recording::open(&[log.file().path()]).unwrap(), paths, &["a"]);
+    let reader = |paths| SignalReader::new(fric_log::log::Log::open(&[path]).unwrap(), paths, &["a"]);
     let bits = |row: &Sample<'_>| {
         [row.cables[0].length_m, row.cables[0].speed_m_per_s, row.reference_force_n[0]].map(f64::to_bits)
     };
@@ -148,11 +155,28 @@ fn speeds_from_the_lengths_take_the_place_of_those_of_the_log() {
         with.add("/cables", JOINT_STATES, stamp, joints(stamp, &["a"], &[length_m], &[7.0], &[3.0]));
         without.add("/cables", JOINT_STATES, stamp, joints(stamp, &["a"], &[length_m], &[], &[3.0]));
     }
-    let hanging = "reference = { hanging_mass_kg = 5.0 }\n";
-    for known in ["", hanging] {
-        let [derived, _] = speeds(&without, known);
-        assert_eq!(derived.len(), 300);
-        assert_ne!(speeds(&with, known)[0], derived);
-        assert_eq!(speeds(&with, &format!("{known}speed = 'lengths'\n")), [derived.clone(), derived]);
+    let folder = TempDir::new().unwrap();
+    let table = |log: &Log, name: &str, head: &str| {
+        let mut text = format!("time_s,a.force_n,a.length_m{head}\n");
+        let mut rows = SignalReader::new(Recording::open(&[log.file().path()]).unwrap(), cables_only(), &["a"]);
+        while let Some(row) = rows.next_row().unwrap() {
+            let CableInput { sensor_force_n, length_m, .. } = row.cables[0];
+            #[expect(clippy::cast_precision_loss, reason = "milliseconds")]
+            let time_s = (row.stamp_nanos / MS) as f64 * 1e-3;
+            text += &format!("{time_s:.3},{sensor_force_n},{length_m}{}\n", if head.is_empty() { "" } else { ",7" });
+        }
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let tables = [table(&with, "with.csv", ",a.speed_m_per_s"), table(&without, "without.csv", "")];
+    let [with, without] = [&with, &without].map(Log::file);
+    for [with, without] in [[with.path(), without.path()], [&tables[0], &tables[1]]] {
+        for known in ["", "reference = { hanging_mass_kg = 5.0 }\n"] {
+            let [derived, _] = speeds(without, known);
+            assert_eq!(derived.len(), 300);
+            assert_ne!(speeds(with, known)[0], derived);
+            assert_eq!(speeds(with, &format!("{known}speed = 'lengths'\n")), [derived.clone(), derived]);
+        }
     }
 }

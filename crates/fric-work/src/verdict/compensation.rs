@@ -2,8 +2,8 @@
 
 use fric_core::parameters::OFFSET;
 use fric_lab::errors::{ForceError, WrenchError};
-use fric_lab::fit::Parameter;
 use fric_lab::fit::result::{FitCableResult, FitResult};
+use fric_lab::fit::{HALF_INTERVAL, Parameter};
 use fric_lab::hysteresis::HysteresisResult;
 use fric_lab::text::{listed, significant};
 
@@ -203,7 +203,7 @@ impl ReplayResult {
             ));
         }
         for cable in self.cables.iter().filter(|cable| !cable.faults.is_empty()) {
-            todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
+            todo.push(format!("Mend the recording of {}; its faults are listed.", cable.name));
         }
         if todo.is_empty() {
             todo.push("Nothing: the values can go to the control loop.".to_owned());
@@ -255,7 +255,7 @@ pub fn of_fit(result: &FitResult) -> Verdict {
         ));
     }
     for cable in result.cables.iter().filter(|cable| !cable.faults.is_empty()) {
-        todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
+        todo.push(format!("Mend the recording of {}; its faults are listed.", cable.name));
     }
     if tone != Tone::Well {
         todo.push("See what the model lacks: fric-cli discover with the same log and model.".to_owned());
@@ -285,11 +285,14 @@ fn of_zeros(result: &FitResult) -> Option<String> {
     let key = Parameter::all().find(|of| of.place() == OFFSET)?.to_string();
     let zeros = result.cables.iter().filter_map(|cable| {
         let offset_n = cable.parameters.get(&key)?;
-        let is_fitted = cable.standard_errors.get(&key).is_some();
+        // Its interval is narrower than itself.
+        let is_fitted = cable.standard_errors.get(&key).is_some_and(|error| HALF_INTERVAL * error < offset_n.abs());
         // Half of the squares before.
         let is_shown = format!("{:.4}", offset_n.abs()) != "0.0000";
         let is_most = is_shown && 2.0 * offset_n * offset_n > cable.before?.rms_n.powi(2);
-        (is_fitted && is_most).then(|| format!("{key} of {} is {} N", cable.name, significant(offset_n)))
+        // One of many that agree is no finding.
+        let is_open = cable.open.iter().any(|open| open.0.iter().any(|part| part.parameter == key));
+        (is_fitted && is_most && !is_open).then(|| format!("{key} of {} is {} N", cable.name, significant(offset_n)))
     });
     let zeros: Vec<String> = zeros.collect();
     (!zeros.is_empty()).then(|| {

@@ -102,9 +102,9 @@ const COMMAND_WORDS: [&str; 8] = ["set", "setpoint", "target", "command", "comma
 const COMMAND_BEGINNING: &str = "soll";
 /// Words of a place on the earth, which is no length of a cable.
 const GEOGRAPHIC_WORDS: [&str; 8] = ["latitude", "longitude", "altitude", "lat", "lon", "alt", "east", "north"];
-/// Words of what goes with the force where no sensor shows it.
-const DRIVE_WORDS: [&str; 8] =
-    ["torque", "tau", "moment", "drehmoment", "current", "strom", "motorstrom", "motormoment"];
+/// Words of what goes with the force where no sensor shows it: torques, and currents.
+const TORQUE_WORDS: [&str; 5] = ["torque", "tau", "moment", "drehmoment", "motormoment"];
+const CURRENT_WORDS: [&str; 3] = ["current", "strom", "motorstrom"];
 
 /// A column that may be a signal.
 struct Candidate {
@@ -268,14 +268,17 @@ fn add_cables(found: &[ColumnGuess], draft: &mut Draft) {
 
 /// Offers torques and currents for the forces that are missing, those that are measured first.
 fn offer_drives(table: &Table<'_>, unknown: &[usize], draft: &mut Draft) {
+    let is_any = |words: &[String], of: &[&str]| words.iter().any(|word| of.contains(&word.as_str()));
     let mut drives: Vec<(&String, Vec<String>)> = unknown
         .iter()
         .filter(|place| !table.never_changes(**place))
         .filter_map(|place| table.names.get(*place))
         .map(|name| (name, words_of(name)))
-        .filter(|(_, words)| words.iter().any(|word| DRIVE_WORDS.contains(&word.as_str())) && !is_command(words))
+        .filter(|(_, words)| is_any(words, &TORQUE_WORDS) || is_any(words, &CURRENT_WORDS))
+        .filter(|(_, words)| !is_command(words))
         .collect();
-    drives.sort_by_key(|(_, words)| !words.iter().any(|word| MEASURED_WORDS.contains(&word.as_str())));
+    // A torque is nearer to the force than the current that makes it.
+    drives.sort_by_key(|(_, words)| (!is_any(words, &MEASURED_WORDS), is_any(words, &CURRENT_WORDS)));
     for (name, words) in drives {
         let key = format!("{}{FORCE}", numbered_cable(&words));
         if draft.missing.contains(&key) && !draft.offers.iter().any(|offer| offer.guess.key == key) {
@@ -414,6 +417,8 @@ fn signal(name: &str, unit: &str) -> Option<(String, f64)> {
     let by_unit = Head::of(name).unit.or(stated_unit(unit)).and_then(Unit::of);
     let (quantity, factor) = match by_unit {
         Some(Unit::Other) => return None,
+        // `v_ms` is in metres per second.
+        Some(Unit::Of(Quantity::Time, _)) if by_word == Some(Quantity::Speed) => (Quantity::Speed, 1.0),
         // The symbol of time, as in `Zeit [t]`, is no tonne.
         Some(Unit::Of(quantity, factor)) if (quantity, by_word) != (Quantity::Force, Some(Quantity::Time)) => {
             (quantity, factor)
@@ -477,6 +482,8 @@ mod tests {
             ("position_m", "cable1.length_m", 1.0),
             ("wound 2 (mm)", "cable2.length_m", 1e-3),
             ("speed_2_mm_per_s", "cable2.speed_m_per_s", 1e-3),
+            ("speed_m_s", "cable1.speed_m_per_s", 1.0),
+            ("v_ms", "cable1.speed_m_per_s", 1.0),
             ("F4", "cable4.force_n", 1.0),
             ("platform force 4 [N]", "cable4.reference_n", 1.0),
             ("winch.length_m", "winch.length_m", 1.0),
@@ -576,6 +583,7 @@ mod tests {
         assert_eq!(offered(&["t [s]", "F Winde [kN]", "Fref [kN]", "l [mm]"]), []);
         let drive = ["time", "joint_pos", "tau_rigid", "tau_measured", "current"];
         assert_eq!(offered(&drive), pair("cable1.force_n", "tau_measured"));
+        assert_eq!(offered(&["time", "joint_pos", "current", "torque"]), pair("cable1.force_n", "torque"));
         assert_eq!(offered(&["time", "joint_pos", "effort", "torque"]), []);
     }
 

@@ -21,7 +21,7 @@ use crate::discover::workbench::{self, Trial, Workbench};
 use crate::discover::{Task, rest};
 use crate::effects::Around;
 use crate::fit::{CableRecord, FitOptions, StoreError};
-use crate::samples::conditions::{Condition, conditions, load, time};
+use crate::samples::conditions::{Condition, conditions, load, log, time};
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
 use crate::samples::steps::CoarseSteps;
@@ -65,7 +65,8 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     // The sensor force and its rate contain the residual. No effect would appear steady over them.
     let without_residual =
         conditions.iter().filter(|condition| !["sensor_force", "force_rate"].contains(&condition.signal));
-    let steady: Vec<Condition<'_>> = without_residual.cloned().chain([load(record), time(record)]).collect();
+    let of_run = [load(record), time(record)].into_iter().chain(log(record));
+    let steady: Vec<Condition<'_>> = without_residual.cloned().chain(of_run).collect();
     let (mut start, held) = given_model(record, &solution);
 
     let measured = crate::samples::interpolated::measured(record);

@@ -398,8 +398,11 @@ impl<'b, 'a> Search<'b, 'a> {
         // An effect that the log cannot distinguish from it is another name for it.
         let beyond = self.beyond_the_log();
         let mut rivals = self.round(&others);
-        rivals
-            .retain(|(other, _)| *other != effect && (beyond.contains_key(other) || !self.refused.contains_key(other)));
+        let cycle_s = self.bench.record.cycle_s;
+        rivals.retain(|(other, trial)| {
+            let is_refused = !beyond.contains_key(other) && self.refused.contains_key(other);
+            *other != effect && !is_refused && !is_at_end(*other, &trial.values, cycle_s)
+        });
         let memory = inflation(self.bench, &self.fit(found), &fitted(effect));
         let evidence = |(_, trial): &(Effect, Trial)| self.delta_bic(&without, trial, memory);
         let squares = |(_, trial): &(Effect, Trial)| trial.training;
