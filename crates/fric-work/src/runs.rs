@@ -111,8 +111,9 @@ impl<'a> Runs<'a> {
             Ok(samples.add(&sample)?)
         })?;
         if about.cycle.is_some() && about.cycle != self.cycle_warning {
-            watch.warn(about.cycle.as_slice())?;
-            self.cycle_warning = about.cycle.clone();
+            let of_log = if names.len() > 1 { format!("{told}: ") } else { String::new() };
+            watch.warn(&about.cycle.iter().map(|cycle| of_log.clone() + cycle).collect::<Vec<_>>())?;
+            self.cycle_warning.clone_from(&about.cycle);
         }
         self.all_apart.retain(|role| about.times_apart(*role).is_some());
         self.apart = self.all_apart.first().and_then(|role| about.times_apart(*role));

@@ -12,6 +12,8 @@ const RATE_CYCLES: usize = 20;
 /// Maximum number of bins of a condition, and of the length, along which a defect is narrow.
 const BINS: usize = 16;
 const LENGTH_BINS: usize = 64;
+/// The name of the condition that is the number of the log.
+pub const LOG: &str = "log";
 /// A cable slower than this fraction of its usual speed is at rest, and its position there depends only on the run.
 const RESTING_RATIO: f64 = 0.02;
 
@@ -136,7 +138,7 @@ pub fn log<'a>(record: &CableRecord<'a>) -> Option<Condition<'a>> {
     let bins = Spacing::Widths(starts.len().min(BINS));
     #[expect(clippy::cast_precision_loss, reason = "a small count")]
     let number = move |cycle: usize| starts.partition_point(|start| *start <= cycle) as f64;
-    (record.logs().count() > 1).then(|| Condition::new(record, ("log", "1", bins), number))
+    (record.logs().count() > 1).then(|| Condition::new(record, (LOG, "1", bins), number))
 }
 
 /// Returns the root mean square of the speed, m/s.

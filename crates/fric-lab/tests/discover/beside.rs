@@ -66,9 +66,45 @@ impl Default for Bench {
     }
 }
 
+impl Bench {
+    /// Adds a log of the bench.
+    fn run(&self, measurements: &mut Measurements<'_>, mut normal: impl FnMut() -> f64) {
+        let Self { size, zero_n, gain, speeds_m_per_s, carried_ratio, .. } = *self;
+        let (mut held_n, mut last_m) = ([0.0_f64; 2], 0.0);
+        for (cycle, length_m) in (0_i32..).zip(places_m(speeds_m_per_s)) {
+            let time_s = CYCLE_S * f64::from(cycle);
+            let way_m = length_m - std::mem::replace(&mut last_m, length_m);
+            let load_n = size * (13.0 + 5.0 * (TAU * time_s / 17.0).sin() + 0.8 * (TAU * time_s / 5.1).sin());
+            let mut force_n = load_n;
+            for held_n in &mut held_n {
+                let greatest_n = TRUE_MU * 2.0_f64.sqrt() * (force_n - carried_ratio * *held_n);
+                if way_m.abs() > 0.0 {
+                    let end_n = greatest_n * way_m.signum();
+                    *held_n =
+                        end_n + (*held_n - end_n) * (-size * SIGMA_N_PER_M / 2.0 * way_m.abs() / greatest_n).exp();
+                }
+                force_n -= *held_n + size * TRUE_VISCOUS_N_S_PER_M * way_m / CYCLE_S;
+            }
+            let shown_n = gain * force_n + zero_n + 0.03 * normal();
+            measurements.add(&Sample {
+                stamp_nanos: i64::from(cycle) * 10_000_000,
+                cables: &[CableInput { sensor_force_n: shown_n, length_m, speed_m_per_s: way_m / CYCLE_S }],
+                reference_force_n: &[load_n + 0.015 * normal()],
+                pose: None,
+                outside_wrench: None,
+            });
+        }
+    }
+}
+
 /// Looks at a log of a bench.
 fn look(bench: &Bench) -> CableDiscovery {
-    let Bench { size, zero_n, gain, given_viscous_n_s_per_m, speeds_m_per_s, carried_ratio } = *bench;
+    look_at_all(std::slice::from_ref(bench))
+}
+
+/// Looks at several logs, of which each is of one bench; what is given is that of the first.
+fn look_at_all(benches: &[Bench]) -> CableDiscovery {
+    let given_viscous_n_s_per_m = benches[0].given_viscous_n_s_per_m;
     let text = format!(
         "format = \"fric-robot/1\"\nname = \"bench\"\ncycle_s = {CYCLE_S}\n[[cable]]\nname = \"w\"\n\
          pulleys = [{{ wrap_deg = 90.0 }}, {{ wrap_deg = 90.0 }}]\n\
@@ -76,31 +112,10 @@ fn look(bench: &Bench) -> CableDiscovery {
     );
     let robot = RobotFile::parse(&text, "bench").unwrap();
     let mut measurements = Measurements::new(&robot.params(), Reference::Forces);
-    measurements.start_log();
     let mut random = ChaCha8Rng::seed_from_u64(3);
-    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-    let (mut held_n, mut last_m) = ([0.0_f64; 2], 0.0);
-    for (cycle, length_m) in (0_i32..).zip(places_m(speeds_m_per_s)) {
-        let time_s = CYCLE_S * f64::from(cycle);
-        let way_m = length_m - std::mem::replace(&mut last_m, length_m);
-        let load_n = size * (13.0 + 5.0 * (TAU * time_s / 17.0).sin() + 0.8 * (TAU * time_s / 5.1).sin());
-        let mut force_n = load_n;
-        for held_n in &mut held_n {
-            let greatest_n = TRUE_MU * 2.0_f64.sqrt() * (force_n - carried_ratio * *held_n);
-            if way_m.abs() > 0.0 {
-                let end_n = greatest_n * way_m.signum();
-                *held_n = end_n + (*held_n - end_n) * (-size * SIGMA_N_PER_M / 2.0 * way_m.abs() / greatest_n).exp();
-            }
-            force_n -= *held_n + size * TRUE_VISCOUS_N_S_PER_M * way_m / CYCLE_S;
-        }
-        let shown_n = gain * force_n + zero_n + 0.03 * normal();
-        measurements.add(&Sample {
-            stamp_nanos: i64::from(cycle) * 10_000_000,
-            cables: &[CableInput { sensor_force_n: shown_n, length_m, speed_m_per_s: way_m / CYCLE_S }],
-            reference_force_n: &[load_n + 0.015 * normal()],
-            pose: None,
-            outside_wrench: None,
-        });
+    for bench in benches {
+        measurements.start_log();
+        bench.run(&mut measurements, || StandardNormal.sample(&mut random));
     }
     discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap().remove(0)
 }
@@ -171,4 +186,13 @@ fn another_law_of_the_same_friction_is_no_fault_of_the_sensor() {
         let found = look(&Bench { carried_ratio, ..Bench::default() });
         assert_eq!(names(&found), [Effect::Viscous], "{carried_ratio}");
     }
+}
+
+/// Sensors are tared anew before a log. A zero of one size in all of them is none, and what is a mean of several logs is no drift in each.
+#[test]
+fn a_zero_that_differs_from_log_to_log_is_not_named_as_one() {
+    let logs = [0.1, 1.2].map(|zero_n| Bench { zero_n, given_viscous_n_s_per_m: 0.8, ..Bench::default() });
+    assert_eq!(names(&look_at_all(&logs)), []);
+    let alike = [0.7, 0.7].map(|zero_n| Bench { zero_n, given_viscous_n_s_per_m: 0.8, ..Bench::default() });
+    assert_eq!(names(&look_at_all(&alike)), [Effect::SensorOffset]);
 }

@@ -332,7 +332,10 @@ mod tests {
         assert_eq!(form(&format!("{padded}t;F;l\ns;N;m\n{row}")), expected(';', "t|F|l", "s|N|m", row, 6));
         // Rows without names, and with an event in some.
         let rows = "0,0.00,5.0,1.0,start\n1,0.01,5.1,1.0,\n2,0.02,5.2,1.0,\n";
-        assert_eq!(form(&format!(",time_s,F,l,event\n{rows}")), expected(',', "column 1|time_s|F|l|event", "", rows, 2));
+        assert_eq!(
+            form(&format!(",time_s,F,l,event\n{rows}")),
+            expected(',', "column 1|time_s|F|l|event", "", rows, 2)
+        );
         // Times that are dates, and text in every row.
         let rows = "2024-05-03 12:00:00.001\t5.3\tok\n2024-05-03 12:00:00.002\t5.4\tok\n";
         assert_eq!(form(&format!("a\tb\tc\n{rows}")), expected('\t', "a|b|c", "", rows, 2));

@@ -52,6 +52,8 @@ pub const NEGLIGIBLE: f64 = 0.01;
 /// Minimum ΔBIC to keep an effect, and to prefer one name over another. 10 would suffice if the memory of the residual were known. Under drifting
 /// noise, the best of a dozen candidates reaches nearly 30 by chance.
 pub const STRONG_BIC: f64 = 30.0;
+/// A rival that leaves less than this fraction of the noise's squares makes less of the noise, not of the error: a gain of 0.7 and less.
+const LEAST_NOISE_RATIO: f64 = 0.5;
 /// Maximum number of rounds of entering, exchanging and justifying, and of passes in which everything that was refused is tried again.
 const ROUNDS: usize = 8;
 const PASSES: usize = 2;
@@ -401,7 +403,9 @@ impl<'b, 'a> Search<'b, 'a> {
         let cycle_s = self.bench.record.cycle_s;
         rivals.retain(|(other, trial)| {
             let is_refused = !beyond.contains_key(other) && self.refused.contains_key(other);
-            *other != effect && !is_refused && !is_at_end(*other, &trial.values, cycle_s)
+            // Under one load a gain of nearly nothing agrees with it, and makes less of the noise too.
+            let is_trivial = trial.held_out < LEAST_NOISE_RATIO * self.noise_squares;
+            *other != effect && !is_refused && !is_trivial && !is_at_end(*other, &trial.values, cycle_s)
         });
         let memory = inflation(self.bench, &self.fit(found), &fitted(effect));
         let evidence = |(_, trial): &(Effect, Trial)| self.delta_bic(&without, trial, memory);

@@ -13,7 +13,7 @@ use super::projection::{Signals, visit_less_projection};
 use crate::discover::workbench::{Trial, Workbench};
 use crate::fit::Parameter;
 use crate::samples::bins::Bins;
-use crate::samples::conditions::Condition;
+use crate::samples::conditions::{Condition, LOG};
 use crate::search::problem::Problem;
 
 /// Relative size of an effect over one condition.
@@ -77,7 +77,34 @@ impl<'a> Portrait<'a> {
     pub fn steadiness(&self) -> Vec<Steadiness> {
         let finite = self.residual_n.iter().filter(|number| number.is_finite());
         let excess: f64 = finite.map(|number| number * number - self.noise_n * self.noise_n).sum();
-        self.conditions.iter().filter_map(|condition| self.over(condition, excess)).collect()
+        let over = |condition| self.over(condition, excess);
+        let log = self.conditions.iter().find(|condition| condition.signal == LOG);
+        self.conditions.iter().filter_map(over).chain(log.and_then(|log| self.within(log))).collect()
+    }
+
+    /// Returns the steadiness from what changes in a log to what differs between logs. Of several short logs, what differs between them easily looks like
+    /// an effect of their durations or speeds.
+    fn within(&self, log: &Condition<'_>) -> Option<Steadiness> {
+        // By log: the count, and the sums of both, of the products and of the squares.
+        let mut sums: Vec<(f64, [f64; 5])> = Vec::new();
+        let samples = log.values().zip(&self.residual_n).zip(&self.own_n);
+        for ((number, residual_n), own_n) in samples.filter(|((_, r), own)| r.is_finite() && own.is_finite()) {
+            if sums.last().is_none_or(|(last, _)| (last - number).abs() > 0.0) {
+                sums.push((number, [0.0; 5]));
+            }
+            let of_sample = [1.0, *residual_n, *own_n, own_n * residual_n, own_n * own_n];
+            let all = sums.last_mut().into_iter().flat_map(|(_, sums)| sums);
+            all.zip(of_sample).for_each(|(sum, number)| *sum += number);
+        }
+        let centred = |[count, residual, own, product, square]: [f64; 5]| {
+            [product - own * residual / count, square - own * own / count]
+        };
+        let [product, square] = sums
+            .into_iter()
+            .map(|(_, sums)| centred(sums))
+            .fold([0.0; 2], |sum, of_log| [sum[0] + of_log[0], sum[1] + of_log[1]]);
+        let scatter = (product * product / square - self.variance()) / square;
+        (square > 0.0).then_some(Steadiness { signal: LOG, scatter, bent: 0.0, tilt: 0.0 })
     }
 
     fn over(&self, condition: &Condition<'_>, excess: f64) -> Option<Steadiness> {
