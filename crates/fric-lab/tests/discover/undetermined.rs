@@ -20,7 +20,8 @@ fn load_n(cycle: usize) -> f64 {
     500.0 + 5.0 * (TAU * 4e-3 * f64::from(u32::try_from(cycle).unwrap()) / 7.0).sin()
 }
 
-/// A cable with Coulomb friction without presliding, on a pulley that it wraps by half a turn: in motion the winch holds `1 ∓ 2μ` of the load.
+/// A cable with Coulomb friction without presliding, on a pulley that it wraps by half a turn: in motion the winch holds `(1 ∓ μ)/(1 ± μ)` of the load
+/// (\[P\] 10).
 fn log() -> Vec<CableInput> {
     let mut random = ChaCha8Rng::seed_from_u64(31);
     let at = |cycle: usize| {
@@ -30,8 +31,9 @@ fn log() -> Vec<CableInput> {
     let mut input = |cycle| {
         let (length_m, speed_m_per_s) = at(cycle);
         let noise: f64 = StandardNormal.sample(&mut random);
-        let friction_n = 2.0 * MU * load_n(cycle) * f64::signum(speed_m_per_s);
-        CableInput { sensor_force_n: load_n(cycle) - friction_n + NOISE_N * noise, length_m, speed_m_per_s }
+        let friction = MU * f64::signum(speed_m_per_s);
+        let held_n = load_n(cycle) * (1.0 - friction) / (1.0 + friction);
+        CableInput { sensor_force_n: held_n + NOISE_N * noise, length_m, speed_m_per_s }
     };
     (0..COUNT).map(&mut input).collect()
 }
