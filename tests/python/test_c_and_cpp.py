@@ -334,7 +334,7 @@ def example_of(path):
     text = path.read_text(encoding="utf-8")
     kind = re.search(r'kind: "(\w+)"', text)[1]
     parameters = text[text.index("parameters: &") : text.index("example: &[")]
-    keys = re.findall(r'(?:key: |setting\(|size\()"(\w+)"', parameters)
+    keys = re.findall(r'(?:fitted|setting|size)\(\s*"(\w+)"', parameters)
     if "ripple::rows" in parameters:
         keys = [*re.findall(r'\["(\w+)", "(\w+)"\]', parameters)[0], "period_m"]
     values = re.search(r"example: &\[(.*?)\]", text, re.DOTALL)[1].strip(" \n,").split(",")
