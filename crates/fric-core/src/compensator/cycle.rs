@@ -1,6 +1,8 @@
 //! Input and output of a cycle.
 
+use crate::numbers::lanes::Block;
 use crate::platform::{Pose, Wrench};
+use crate::signals::RawSignals;
 use crate::signals::status::CableStatus;
 use crate::words::words_of;
 
@@ -36,6 +38,19 @@ pub struct CycleInput<const CABLES: usize> {
 impl<const CABLES: usize> Default for CycleInput<CABLES> {
     fn default() -> Self {
         Self { cables: [CableInput::default(); CABLES], pose: None, elapsed_cycles: 1.0 }
+    }
+}
+
+impl<const CABLES: usize> CycleInput<CABLES> {
+    /// Returns the signals of a block's cables.
+    #[inline(always)]
+    pub(super) fn signals_of_block<T: Block>(&self, first: usize) -> RawSignals<T> {
+        let signal = |of: fn(&CableInput) -> f64| T::from_lanes(|lane| self.cables.get(first + lane).map_or(0.0, of));
+        RawSignals {
+            sensor_force_n: signal(|cable| cable.sensor_force_n),
+            length_m: signal(|cable| cable.length_m),
+            speed_m_per_s: signal(|cable| cable.speed_m_per_s),
+        }
     }
 }
 

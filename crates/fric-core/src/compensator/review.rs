@@ -4,7 +4,6 @@ use super::Compensator;
 use crate::cable::Cable;
 use crate::compensator::columns::BlockOfCables;
 use crate::compensator::cycle::CycleInput;
-use crate::compensator::step::raw_signals;
 use crate::effects::Acting;
 use crate::effects::direction_asymmetry::{self, DirectionAsymmetry};
 use crate::effects::friction_drift::{self, FrictionDrift};
@@ -26,7 +25,8 @@ impl<const CABLES: usize> Compensator<CABLES> {
     pub(super) fn review_sensor<T: Block>(&mut self, block: usize, input: &CycleInput<CABLES>) -> u32 {
         let mut last = self.state.columns.signals::<T>(block);
         let (last_n, unchanged_cycles) = (last.sensor_force_n, last.frozen_count);
-        let signals = condition(&self.limits, &mut last, &raw_signals(input, block * T::COUNT), input.elapsed_cycles);
+        let signals =
+            condition(&self.limits, &mut last, &input.signals_of_block(block * T::COUNT), input.elapsed_cycles);
         let mut doubts = self.state.columns.doubts::<T>(block);
         let columns = &self.state.columns;
         let stored_n =
@@ -96,7 +96,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
             let drifted = FrictionDrift::of(value).factor(T::splat(self.state.cycle * self.cycle_s));
             (raised, most_raised) = (raised * drifted, most_raised * drifted);
         }
-        let speed_m_per_s: T = raw_signals(input, first).speed_m_per_s;
+        let speed_m_per_s: T = input.signals_of_block::<T>(first).speed_m_per_s;
         let speed_m_per_s = speed_m_per_s.keep(speed_m_per_s.within(GREATEST_MOTION)).abs();
         let mut viscous_n =
             (0..self.place_count).fold(zero, |sum, place| sum + Cable::<T>::viscous_n(&cable, place, speed_m_per_s));

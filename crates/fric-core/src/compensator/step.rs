@@ -4,7 +4,7 @@ use super::Compensator;
 use crate::cable::Moment;
 use crate::cable_cycle::cable_cycle;
 use crate::compensator::columns::BlockOfCables;
-use crate::compensator::cycle::{CableInput, CableOutput, CycleInput, CycleOutput};
+use crate::compensator::cycle::{CableOutput, CycleInput, CycleOutput};
 use crate::compensator::review::BEARS_OTHERWISE;
 use crate::effects::time_delay::{self, Delay, DelayLine, Shifted};
 use crate::numbers::lanes::{Block, CycleLanes, LANES, Lanes};
@@ -119,7 +119,7 @@ impl<const CABLES: usize> Compensator<CABLES> {
         }
         let first = block * T::COUNT;
         let missing = if stepped.has_pose { 0 } else { T::bits(self.misses_pose::<T>(block)) };
-        let raw: RawSignals<T> = raw_signals(input, first);
+        let raw: RawSignals<T> = input.signals_of_block(first);
         // A sensor force that is not a number is not calm either.
         let before_n = T::load(&self.state.columns.sensor_force_n, block);
         let calm = (raw.sensor_force_n - before_n).abs().le(T::load(&self.params.calm_change_n, block));
@@ -228,17 +228,6 @@ struct Stepped<'a, const CABLES: usize> {
     unreachable: u32,
     /// Output: forces at the platform, N.
     forces_n: &'a mut [f64; CABLES],
-}
-
-/// Returns the signals of a block's cables.
-#[inline(always)]
-pub(super) fn raw_signals<T: Block, const CABLES: usize>(input: &CycleInput<CABLES>, first: usize) -> RawSignals<T> {
-    let signal = |of: fn(&CableInput) -> f64| T::from_lanes(|lane| input.cables.get(first + lane).map_or(0.0, of));
-    RawSignals {
-        sensor_force_n: signal(|cable| cable.sensor_force_n),
-        length_m: signal(|cable| cable.length_m),
-        speed_m_per_s: signal(|cable| cable.speed_m_per_s),
-    }
 }
 
 /// Returns which cables of a block have a lead, and the displacement that it extrapolates, m.

@@ -6,7 +6,6 @@
 
 use std::borrow::ToOwned;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::format;
 use std::path::{Path, PathBuf};
 use std::string::{String, ToString};
@@ -15,9 +14,11 @@ use std::vec::Vec;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use super::effect_table::EffectTable;
 use super::locate::{Line, Step, line_of, read_tables};
 use super::log_columns;
 pub use super::log_columns::{ColumnTable, POSE_COLUMNS, TIME_COLUMN, WRENCH_COLUMNS};
+pub use super::options_error::OptionsError;
 use super::read::{exactly, exactly_if_given, table, table_if_given, tables, tables_by_key, word, word_if_given};
 pub use super::reference::{KnownReferenceTable, ReferenceTable};
 use super::{CableParams, MOST_CABLES, MonitorOptions, ParamError, ParamProblem, PlatformOptions, RobotParams};
@@ -250,16 +251,6 @@ pub struct ValidatedTable {
     pub speed_m_per_s: Option<f64>,
 }
 
-/// An entry of `effects`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EffectTable {
-    /// Name in the catalogue.
-    pub kind: String,
-    /// Parameters by key.
-    #[serde(flatten)]
-    pub parameters: BTreeMap<String, f64>,
-}
-
 /// A valid robot file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
@@ -274,7 +265,7 @@ pub struct RobotFile {
 #[non_exhaustive]
 pub enum RobotFileError {
     /// The file cannot be read.
-    #[error("cannot read the robot file {}: {source}; check the path", path.display())]
+    #[error("cannot read the robot file {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -440,29 +431,5 @@ impl RobotOptions {
         named.path.splice(0..0, [Step::Key("cable"), Step::Index(index)]);
         named.cable = Some(table.name.clone());
         named
-    }
-}
-
-/// Errors of [`RobotOptions`]: the key and the problem.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub struct OptionsError {
-    pub(super) path: Vec<Step>,
-    cable: Option<String>,
-    key: String,
-    problem: String,
-}
-
-impl OptionsError {
-    pub(super) fn new(path: &[Step], key: &str, problem: String) -> Self {
-        Self { path: path.to_vec(), cable: None, key: key.to_owned(), problem }
-    }
-}
-
-impl fmt::Display for OptionsError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(cable) = &self.cable {
-            write!(formatter, "cable \"{cable}\": ")?;
-        }
-        write!(formatter, "`{}` {}", self.key, self.problem)
     }
 }

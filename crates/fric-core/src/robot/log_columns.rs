@@ -8,8 +8,8 @@ use std::vec::Vec;
 
 use serde::{Deserialize, Serialize};
 
-use super::file::OptionsError;
 use super::locate::{Step, unknown_name};
+use super::options_error::OptionsError;
 
 /// The time column, s.
 pub const TIME_COLUMN: &str = "time_s";

@@ -7,11 +7,15 @@ mod params;
 #[cfg(feature = "robot-file")]
 pub mod edit;
 #[cfg(feature = "robot-file")]
+mod effect_table;
+#[cfg(feature = "robot-file")]
 pub mod file;
 #[cfg(feature = "robot-file")]
 pub mod locate;
 #[cfg(feature = "robot-file")]
 mod log_columns;
+#[cfg(feature = "robot-file")]
+mod options_error;
 #[cfg(feature = "robot-file")]
 pub mod read;
 #[cfg(feature = "robot-file")]

@@ -9,8 +9,6 @@ use std::vec::Vec;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, Error, IntoDeserializer as _, MapAccess, SeqAccess, Visitor};
 
-use super::file::EffectTable;
-
 /// A table: `serde`'s own structures also take a list of their values, in an order that no file states.
 ///
 /// # Errors
@@ -122,34 +120,5 @@ impl<'de, const COUNT: usize> Visitor<'de> for Numbers<COUNT> {
             count += 1;
         }
         if count == COUNT { Ok(numbers) } else { Err(A::Error::invalid_length(count, &self)) }
-    }
-}
-
-/// Implemented by hand, because a flattened map loses the positions of its keys.
-impl<'de> Deserialize<'de> for EffectTable {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Effect;
-
-        impl<'de> Visitor<'de> for Effect {
-            type Value = EffectTable;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a table with `kind` and the parameters of that effect")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<EffectTable, A::Error> {
-                let (mut kind, mut parameters) = (None, BTreeMap::new());
-                while let Some(key) = table.next_key::<String>()? {
-                    if key == "kind" {
-                        kind = Some(table.next_value()?);
-                    } else {
-                        parameters.insert(key, table.next_value()?);
-                    }
-                }
-                Ok(EffectTable { kind: kind.ok_or_else(|| A::Error::missing_field("kind"))?, parameters })
-            }
-        }
-
-        deserializer.deserialize_map(Effect)
     }
 }

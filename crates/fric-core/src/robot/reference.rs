@@ -9,8 +9,8 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
-use super::file::OptionsError;
 use super::locate::Step;
+use super::options_error::OptionsError;
 use super::{KnownReference, ParamProblem};
 
 /// `reference` as written.

@@ -5,8 +5,9 @@ use std::format;
 use std::string::ToString;
 use std::vec::Vec;
 
-use super::file::{CableTable, OptionsError, PreslidingName, PulleyTable, WrapName};
+use super::file::{CableTable, PreslidingName, PulleyTable, WrapName};
 use super::locate::{Step, unknown_name};
+use super::options_error::OptionsError;
 use super::{
     CableOptions, CableParams, FrictionOptions, GeometryOptions, ParamError, ParamProblem, Presliding, PulleyOptions,
     ValidatedRange,
