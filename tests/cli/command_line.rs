@@ -57,7 +57,8 @@ fn effects_that_are_none_are_told() {
     }
     let twice = ["--effect", "time_delay:delay_s=0.001", "--effect", "time_delay:delay_s=0.002"];
     let start = ["simulate", "--model", "robot.toml", "-o", "new.mcap"];
-    place.run_in_vain(&[&start[..], &twice].concat()).fails(2, &["--effect", "`time_delay`", "twice"]);
+    let run = place.run_in_vain(&[&start[..], &twice].concat());
+    run.fails(2, &["--effect", "`time_delay`", "too often"]).advises(&["twice"]);
 }
 
 #[test]

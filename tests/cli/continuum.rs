@@ -464,10 +464,14 @@ fn bad_runs_get_their_sentence() {
         changed(&good, |name, place, cell| if name == column && place == row { value } else { cell }.to_owned())
     };
     refused(at("time_s", 4, "0.1"), &["time goes from 0.3 s to 0.1 s at sample 5"], "Sort the run");
-    refused(at("tension_base_n", 4, ""), &["`tension_base_n` is NaN at 0.4 s"], "It must be finite");
+    refused(at("tension_base_n", 4, ""), &["`tension_base_n` is NaN at 0.4 s"], "Take the sample out");
     refused(at("tension_base_n", 4, "4.2"), &["4.2 N at 0.4 s", "capacity of 4 N"], "Check the unit");
     refused(at("shift_2_nm", 4, "x"), &["line 6, column `shift_2_nm`: `x`"], "Write digits");
-    refused(good.replacen("shift_2_nm", "shft_2_nm", 1), &["unknown column `shft_2_nm`"], "Did you mean");
+    refused(
+        good.replacen("shift_2_nm", "shft_2_nm", 1),
+        &["unknown column `shft_2_nm`; did you mean `shift_2_nm`"],
+        "Correct its name",
+    );
     refused(without(&good, "shift_2_"), &["`shift_2_nm` is missing beside"], "Add it");
     refused(without(&good, "time_s"), &["`time_s` is missing"], "Add it");
     refused(good.lines().next().unwrap().to_owned() + "\n", &["no row of numbers"], "Record again");

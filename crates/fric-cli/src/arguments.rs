@@ -228,13 +228,8 @@ pub struct PerLogArguments {
 impl PerLogArguments {
     /// The zero that each log has of its own.
     pub fn zero(&self, log_count: usize, reference: ReferenceName) -> Outcome<Option<LogZero>> {
-        zero_per_log(&self.per_log, log_count, reference.into()).map_err(|error| {
-            let failure = Failure::usage(format!("--per-log: {error}"));
-            match error.advice(|reference| format!("--reference {}", reference.name())) {
-                Some(advice) => failure.advise(advice),
-                None => failure,
-            }
-        })
+        zero_per_log(&self.per_log, log_count, reference.into())
+            .map_err(|error| Failure::from(error).of_option("--per-log"))
     }
 
     /// Makes sure that none is given where there is no log of a robot.

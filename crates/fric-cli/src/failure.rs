@@ -1,6 +1,5 @@
 //! The reason why a command stopped, for people: one line with the cause, one with what to do.
 
-use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind};
 use std::path::Path;
@@ -18,10 +17,11 @@ use fric_log::recording::RecordingError;
 use fric_log::signals::{SignalError, TimesApart};
 use fric_log::table::TableError;
 use fric_log::write::WriteError;
-use fric_log::{in_full, reason, with_sources};
+use fric_log::{in_full, reason};
 use fric_tendon::file::ManipulatorFileError;
 use fric_tendon_lab::ContinuumError;
 use fric_work::replay::NoHistogram;
+use miette::Diagnostic;
 
 use crate::terminal::{self, Label};
 
@@ -47,19 +47,20 @@ impl Failure {
         Self { is_usage: true, ..Self::new(cause) }
     }
 
-    /// Creates a failure of the work from an error whose sentence may end with advice.
-    fn with_advice(error: &dyn Error, advice: Option<&str>) -> Self {
-        let Some(advice) = advice else { return Self::new(in_full(error)) };
-        let sentence = error.to_string();
-        let cause =
-            sentence.strip_suffix(advice).map_or(sentence.as_str(), |cause| cause.trim_end_matches(['.', ';', ' ']));
-        Self::new(with_sources(cause.to_owned(), error)).advise(as_sentence(advice))
+    /// Creates a failure of the work from an error with or without advice.
+    fn of(error: &impl Diagnostic) -> Self {
+        Self { advice: error.help().map(|advice| advice.to_string()), ..Self::new(in_full(error)) }
     }
 
     /// Adds what to do.
     pub fn advise(mut self, advice: impl Display) -> Self {
         self.advice = Some(advice.to_string());
         self
+    }
+
+    /// Makes it a failure of the command line, at an option.
+    pub fn of_option(self, option: &str) -> Self {
+        Self { cause: format!("{option}: {}", self.cause), is_usage: true, ..self }
     }
 
     /// Adds the file.
@@ -85,17 +86,26 @@ impl Failure {
     }
 }
 
-macro_rules! failure_with_advice_from {
+macro_rules! failure_of {
     ($($error:ty),* $(,)?) => {$(
         impl From<$error> for Failure {
             fn from(error: $error) -> Self {
-                Self::with_advice(&error, error.advice())
+                Self::of(&error)
             }
         }
     )*};
 }
 
-failure_with_advice_from!(ExcitationError, HysteresisError, LogError, RecordingError, SignalError, SimulationError);
+failure_of!(
+    ContinuumError,
+    ExcitationError,
+    HysteresisError,
+    LogError,
+    RecordingError,
+    SignalError,
+    SimulationError,
+    TableError,
+);
 
 impl From<TimesApart> for Failure {
     fn from(apart: TimesApart) -> Self {
@@ -114,23 +124,9 @@ impl From<FitError> for Failure {
     }
 }
 
-/// Creates the failure of an error whose sentence ends with advice, after its last semicolon.
-fn with_own_advice(error: &dyn Error) -> Failure {
-    let sentence = in_full(error);
-    let Some((cause, advice)) = sentence.rsplit_once("; ") else { return Failure::new(sentence) };
-    Failure::new(cause).advise(as_sentence(advice))
-}
-
-/// Returns the end of a sentence as a sentence of its own.
-fn as_sentence(advice: &str) -> String {
-    let mut letters = advice.chars();
-    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-    format!("{first}{}.", letters.as_str().trim_end_matches('.'))
-}
-
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        Self::new(format!("{error}: {}", reason(&error.source))).advise(StoreError::ADVICE)
+        Self { cause: format!("{error}: {}", reason(&error.source)), ..Self::of(&error) }
     }
 }
 
@@ -149,25 +145,10 @@ impl From<DiscoverError> for Failure {
     }
 }
 
-impl From<ContinuumError> for Failure {
-    fn from(error: ContinuumError) -> Self {
-        with_own_advice(&error)
-    }
-}
-
-impl From<TableError> for Failure {
-    fn from(error: TableError) -> Self {
-        match error {
-            TableError::Recording(error) => error.into(),
-            error => with_own_advice(&error),
-        }
-    }
-}
-
 impl From<ManipulatorFileError> for Failure {
     fn from(error: ManipulatorFileError) -> Self {
         match error {
-            ManipulatorFileError::Read { .. } => with_own_advice(&error),
+            ManipulatorFileError::Read { .. } => Self::new(error).advise("Check the path."),
             error => Self::new(error).advise("Correct the manipulator file, or name another one with --model."),
         }
     }
@@ -175,7 +156,10 @@ impl From<ManipulatorFileError> for Failure {
 
 impl From<RobotFileError> for Failure {
     fn from(error: RobotFileError) -> Self {
-        Self::new(error).advise("Correct the robot file, or name another one with --model.")
+        match error {
+            RobotFileError::Read { .. } => Self::new(error).advise("Check the path."),
+            error => Self::new(error).advise("Correct the robot file, or name another one with --model."),
+        }
     }
 }
 

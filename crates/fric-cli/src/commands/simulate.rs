@@ -94,8 +94,8 @@ fn refused(error: SimulationError) -> Failure {
             let option = if key == "duration_s" { "duration".to_owned() } else { key.replace('_', "-") };
             Failure::usage(format!("--{option} is {value:?}; allowed is {min} to {max}"))
         }
-        SimulationError::RepeatedEffect { .. } => Failure::usage(format!("--effect: {error}")),
-        SimulationError::RepeatedDisturbance { .. } => Failure::usage(format!("--disturbance: {error}")),
+        SimulationError::RepeatedEffect { .. } => Failure::from(error).of_option("--effect"),
+        SimulationError::RepeatedDisturbance { .. } => Failure::from(error).of_option("--disturbance"),
         error => Failure::from(error),
     }
 }

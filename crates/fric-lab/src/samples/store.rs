@@ -15,6 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use fric_core::Sample;
 use fric_core::robot::RobotParams;
+use miette::Diagnostic;
 use thiserror::Error;
 
 use super::record::{LogZero, Measurements, ROW_WIDTH, Reference, Row, Samples};
@@ -32,9 +33,17 @@ const ROW_BYTES: usize = ROW_WIDTH * size_of::<f64>();
 /// Number of rows that are read at once.
 const ROWS_AT_ONCE: usize = 4096;
 
+/// The environment variable with the folder of temporary files.
+const FOLDER_VARIABLE: &str = if cfg!(windows) { "TMP" } else { "TMPDIR" };
+
 /// The temporary file of the samples cannot be made, written or read.
-#[derive(Debug, Error)]
+#[derive(Debug, Diagnostic, Error)]
 #[error("the samples are too many for memory, and a temporary file in {} cannot hold them", folder.display())]
+#[diagnostic(help(
+    "Set {} to a writable folder on a disk with {} free bytes a sample and cable.",
+    FOLDER_VARIABLE,
+    ROW_BYTES
+))]
 pub struct StoreError {
     /// The folder of the temporary file.
     pub folder: PathBuf,
@@ -43,13 +52,6 @@ pub struct StoreError {
 }
 
 impl StoreError {
-    /// What to do, one sentence.
-    pub const ADVICE: &'static str = if cfg!(windows) {
-        "Set TMP to a writable folder on a disk with 72 free bytes a sample and cable."
-    } else {
-        "Set TMPDIR to a writable folder on a disk with 72 free bytes a sample and cable."
-    };
-
     fn new(source: io::Error) -> Self {
         Self { folder: env::temp_dir(), source }
     }

@@ -1,19 +1,11 @@
 //! Errors in the set-up of a simulation.
 
 use fric_core::ParamError;
+use miette::Diagnostic;
 use thiserror::Error;
 
-/// Advice, each the end of a sentence.
-mod advice {
-    pub const EFFECT: &str = "give each effect once, ripples at most twice, with all its parameters";
-    pub const DISTURBANCE: &str = "give each disturbance once, with all its parameters";
-    pub const GEOMETRY: &str = "check `base_m`, `platform_m`, `radius_m` and `axis`, above all the unit m";
-    pub const LOAD: &str = "leave `reference` out, or `base_m` and `platform_m`";
-    pub const PLATFORM: &str = "give every cable both, or simulate the identification run";
-}
-
 /// The reason why a simulation cannot be set up. Running it cannot fail.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq, Diagnostic, Error)]
 #[non_exhaustive]
 pub enum SimulationError {
     /// A number of [`SimulationOptions`](super::SimulationOptions) is not finite or out of range.
@@ -29,13 +21,15 @@ pub enum SimulationError {
         max: f64,
     },
     /// More hidden effects of one kind than a cable can have.
-    #[error("the effect `{kind}` is hidden too often; {}", advice::EFFECT)]
+    #[error("the effect `{kind}` is hidden too often")]
+    #[diagnostic(help("Give each effect once, ripples at most twice, with all its parameters."))]
     RepeatedEffect {
         /// Its name in the catalogue.
         kind: &'static str,
     },
     /// Two disturbances of one kind.
-    #[error("the disturbance `{kind}` is hidden twice; {}", advice::DISTURBANCE)]
+    #[error("the disturbance `{kind}` is hidden twice")]
+    #[diagnostic(help("Give each disturbance once, with all its parameters."))]
     RepeatedDisturbance {
         /// Its name.
         kind: &'static str,
@@ -44,38 +38,22 @@ pub enum SimulationError {
     #[error("the robot's parameters are not right: {0}")]
     Robot(#[from] ParamError),
     /// No position was found where every cable can leave its last pulley.
-    #[error("the platform finds no place where all cables can leave their last pulleys; {}", advice::GEOMETRY)]
+    #[error("the platform finds no place where all cables can leave their last pulleys")]
+    #[diagnostic(help("Check `base_m`, `platform_m`, `radius_m` and `axis`, above all the unit m."))]
     NoWorkspace,
     /// A known load is given for cables that hold a platform.
-    #[error(
-        "`reference` under [log] is a known load, but the cables hold a platform, which pulls as it moves; {}",
-        advice::LOAD
-    )]
+    #[error("`reference` under [log] is a known load, but the cables hold a platform, which pulls as it moves")]
+    #[diagnostic(help("Leave `reference` out, or `base_m` and `platform_m`."))]
     KnownLoad,
     /// A crossing run was requested for a robot without a platform to which all cables are attached.
     #[error(
-        "a crossing run needs a platform that all cables are attached to, and {cable} has no `base_m` and `platform_m`; {}",
-        advice::PLATFORM
+        "a crossing run needs a platform that all cables are attached to, and {cable} has no `base_m` and `platform_m`"
     )]
+    #[diagnostic(help("Give every cable both, or simulate the identification run."))]
     NoPlatform {
         /// The first cable without attachment.
         cable: String,
     },
-}
-
-impl SimulationError {
-    /// Returns the advice that ends the error's sentence, if there is any.
-    #[must_use]
-    pub fn advice(&self) -> Option<&'static str> {
-        match self {
-            Self::OptionOutOfRange { .. } | Self::Robot(_) => None,
-            Self::RepeatedEffect { .. } => Some(advice::EFFECT),
-            Self::RepeatedDisturbance { .. } => Some(advice::DISTURBANCE),
-            Self::NoWorkspace => Some(advice::GEOMETRY),
-            Self::KnownLoad => Some(advice::LOAD),
-            Self::NoPlatform { .. } => Some(advice::PLATFORM),
-        }
-    }
 }
 
 /// The reason why a [`HiddenEffect`](super::HiddenEffect) or a [`Disturbance`](super::Disturbance) was refused.

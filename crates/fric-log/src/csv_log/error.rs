@@ -4,42 +4,18 @@ use std::io;
 use std::path::PathBuf;
 
 use fric_core::robot::nearest_name;
+use miette::Diagnostic;
 use thiserror::Error;
 
 use super::units::TimeUnit;
 
-/// Advice, each the end of a sentence.
-mod advice {
-    pub const DISK: &str = "check the disk, or copy the file and try again";
-    pub const UTF8: &str = "save it as CSV in UTF-8";
-    pub const HEADER: &str = "put a line with the names of the columns in front";
-    pub const COLUMNS: &str = "leave out the columns that are no signals of the robot";
-    pub const NAME: &str = "name the right columns under `[log.columns]` in the robot file, such as \
-                            \"cable1.force_n\" = { column = \"Load cell 1 [kg]\", factor = 9.80665 }";
-    pub const KEY: &str = "write the name there as it stands in the header";
-    pub const SEPARATE: &str =
-        "separate the cells by commas, semicolons, tabs or blanks, as many in each row as there are names";
-    pub const UNITLESS: &str =
-        "a date takes no factor and no offset: remove those of `time_s` under `[log.columns]` in the robot file";
-    pub const RENAME: &str = "take one of the two out, or give it another name";
-    pub const TIME: &str =
-        "give the column of `time_s` the `factor` to seconds under `[log.columns]` in the robot file";
-    pub const CELL: &str =
-        "write digits, without thousands separators, or leave the cell empty where there is no value";
-    pub const DATE: &str = "write a date with the year first, such as 2026-05-03T12:34:56.250, or as 03.05.2026 12:34:56, and \
-                            hours from 0 to 23; with slashes, day and month are not told apart";
-    pub const AGAIN: &str = "the header stands there again: give each recording a file of its own";
-    pub const RECORD: &str = "name a complete copy of it, or record again";
-    pub const ROWS: &str = "give each row as many cells as the header; numbers with decimal commas need semicolons or \
-                            tabs between them";
-}
-
 /// The reason why a CSV log gives no rows.
-#[derive(Debug, Error)]
+#[derive(Debug, Diagnostic, Error)]
 #[non_exhaustive]
 pub enum CsvError {
     /// The operating system cannot read the file.
-    #[error("`{}` could not be read; {}", path.display(), advice::DISK)]
+    #[error("`{}` could not be read", path.display())]
+    #[diagnostic(help("Check the disk, or copy the file and try again."))]
     Read {
         /// The file.
         path: PathBuf,
@@ -47,13 +23,15 @@ pub enum CsvError {
         source: io::Error,
     },
     /// The text has another encoding.
-    #[error("`{}` is text in UTF-16; {}", path.display(), advice::UTF8)]
+    #[error("`{}` is text in UTF-16", path.display())]
+    #[diagnostic(help("Save it as CSV in UTF-8."))]
     NotUtf8 {
         /// The file.
         path: PathBuf,
     },
     /// The file begins with numbers instead of a header.
-    #[error("`{}`, line {line}: there are numbers where the names of the columns should be; {}", path.display(), advice::HEADER)]
+    #[error("`{}`, line {line}: there are numbers where the names of the columns should be", path.display())]
+    #[diagnostic(help("Put a line with the names of the columns in front."))]
     NoHeader {
         /// The file.
         path: PathBuf,
@@ -61,7 +39,8 @@ pub enum CsvError {
         line: u64,
     },
     /// The names of the columns are longer than what is read of them.
-    #[error("`{}`: the line with the names of the columns has more than {} KiB; {}", path.display(), most_bytes >> 10, advice::COLUMNS)]
+    #[error("`{}`: the line with the names of the columns has more than {} KiB", path.display(), most_bytes >> 10)]
+    #[diagnostic(help("Leave out the columns that are no signals of the robot."))]
     LongHeader {
         /// The file.
         path: PathBuf,
@@ -69,7 +48,8 @@ pub enum CsvError {
         most_bytes: u64,
     },
     /// A line is longer than one of signals.
-    #[error("`{}` has a line of more than {} MiB; {}", path.display(), most_bytes >> 20, advice::COLUMNS)]
+    #[error("`{}` has a line of more than {} MiB", path.display(), most_bytes >> 20)]
+    #[diagnostic(help("Leave out the columns that are no signals of the robot."))]
     LongLine {
         /// The file.
         path: PathBuf,
@@ -77,10 +57,11 @@ pub enum CsvError {
         most_bytes: usize,
     },
     /// A required signal has no column.
-    #[error(
-        "`{}` has no column `{wanted}`; it has {}; {}",
-        path.display(), listed(columns), advice::NAME
-    )]
+    #[error("`{}` has no column `{wanted}`; it has {}",
+        path.display(), listed(columns))]
+    #[diagnostic(help(
+        "Name the right columns under `[log.columns]` in the robot file, such as \"cable1.force_n\" = {{ column = \"Load cell 1 [kg]\", factor = 9.80665 }}."
+    ))]
     Missing {
         /// The file.
         path: PathBuf,
@@ -90,10 +71,9 @@ pub enum CsvError {
         columns: Vec<String>,
     },
     /// The robot file names a column that does not exist.
-    #[error(
-        "`{}` has no column `{column}`, which the robot file names for `{key}` under `[log.columns]`; {}it has {}; {}",
-        path.display(), did_you_mean(column, columns), listed(columns), advice::KEY
-    )]
+    #[error("`{}` has no column `{column}`, which the robot file names for `{key}` under `[log.columns]`; {}it has {}",
+        path.display(), did_you_mean(column, columns), listed(columns))]
+    #[diagnostic(help("Write the name there as it stands in the header."))]
     Misnamed {
         /// The file.
         path: PathBuf,
@@ -105,7 +85,10 @@ pub enum CsvError {
         columns: Vec<String>,
     },
     /// Nothing separates the cells.
-    #[error("`{}` has one column alone, `{name}`; {}", path.display(), advice::SEPARATE)]
+    #[error("`{}` has one column alone, `{name}`", path.display())]
+    #[diagnostic(help(
+        "Separate the cells by commas, semicolons, tabs or blanks, as many in each row as there are names."
+    ))]
     OneColumn {
         /// The file.
         path: PathBuf,
@@ -113,7 +96,8 @@ pub enum CsvError {
         name: String,
     },
     /// Two columns have the name of a signal.
-    #[error("`{}`: the column `{column}` stands there twice; {}", path.display(), advice::RENAME)]
+    #[error("`{}`: the column `{column}` stands there twice", path.display())]
+    #[diagnostic(help("Take one of the two out, or give it another name."))]
     Repeated {
         /// The file.
         path: PathBuf,
@@ -121,7 +105,8 @@ pub enum CsvError {
         column: String,
     },
     /// A cell is not a number.
-    #[error("`{}`, line {line}, column `{column}`: `{text}` is no number; {}", path.display(), cell_advice(column, text))]
+    #[error("`{}`, line {line}, column `{column}`: `{text}` is no number", path.display())]
+    #[diagnostic(help("{}", cell_advice(column, text)))]
     Cell {
         /// The file.
         path: PathBuf,
@@ -133,7 +118,10 @@ pub enum CsvError {
         text: String,
     },
     /// A date stands in a column with a factor.
-    #[error("`{}`, line {line}, column `{column}`: `{text}` is a date or a time of day; {}", path.display(), advice::UNITLESS)]
+    #[error("`{}`, line {line}, column `{column}`: `{text}` is a date or a time of day", path.display())]
+    #[diagnostic(help(
+        "A date takes no factor and no offset: remove those of `time_s` under `[log.columns]` in the robot file."
+    ))]
     DateWithFactor {
         /// The file.
         path: PathBuf,
@@ -145,7 +133,8 @@ pub enum CsvError {
         text: String,
     },
     /// A time is too large.
-    #[error("`{}`, line {line}, column `{column}`: `{text}` is no time in seconds; {}", path.display(), time_advice(*unit))]
+    #[error("`{}`, line {line}, column `{column}`: `{text}` is no time in seconds", path.display())]
+    #[diagnostic(help("{}", time_advice(*unit)))]
     Time {
         /// The file.
         path: PathBuf,
@@ -159,13 +148,17 @@ pub enum CsvError {
         unit: Option<TimeUnit>,
     },
     /// There are no rows below the header.
-    #[error("`{}` has no whole row of numbers below its header; {}", path.display(), advice::RECORD)]
+    #[error("`{}` has no whole row of numbers below its header", path.display())]
+    #[diagnostic(help("Name a complete copy of it, or record again."))]
     NoRow {
         /// The file.
         path: PathBuf,
     },
     /// No row is usable.
-    #[error("`{}` has no row that can be used; the first: {problem}; {}", path.display(), advice::ROWS)]
+    #[error("`{}` has no row that can be used; the first: {problem}", path.display())]
+    #[diagnostic(help(
+        "Give each row as many cells as the header; numbers with decimal commas need semicolons or tabs between them."
+    ))]
     NoUsableRow {
         /// The file.
         path: PathBuf,
@@ -173,7 +166,8 @@ pub enum CsvError {
         problem: String,
     },
     /// No row has a force and a length.
-    #[error("`{}`: no row has a number in a column of sensor forces or lengths; {}", path.display(), advice::RECORD)]
+    #[error("`{}`: no row has a number in a column of sensor forces or lengths", path.display())]
+    #[diagnostic(help("Name a complete copy of it, or record again."))]
     NoNumber {
         /// The file.
         path: PathBuf,
@@ -183,22 +177,23 @@ pub enum CsvError {
 /// Maximum number of columns named in an error.
 const MOST_LISTED: usize = 10;
 
-const fn time_advice(unit: Option<TimeUnit>) -> &'static str {
-    match unit {
-        Some(unit) => unit.advice(),
-        None => advice::TIME,
-    }
+fn time_advice(unit: Option<TimeUnit>) -> String {
+    unit.map_or_else(
+        || "Give the column of `time_s` the `factor` to seconds under `[log.columns]` in the robot file.".to_owned(),
+        |unit| format!("If {}.", unit.advice()),
+    )
 }
 
 fn cell_advice(column: &str, text: &str) -> &'static str {
     let has_digits = text.contains(|character: char| character.is_ascii_digit());
     let is_date = has_digits && (text.contains(['/', ':']) || text.matches('-').count() > 1);
     if text == column {
-        advice::AGAIN
+        "The header stands there again: give each recording a file of its own."
     } else if is_date {
-        advice::DATE
+        "Write a date with the year first, such as 2026-05-03T12:34:56.250, or as 03.05.2026 12:34:56, and hours from 0 to 23; \
+         with slashes, day and month are not told apart."
     } else {
-        advice::CELL
+        "Write digits, without thousands separators, or leave the cell empty where there is no value."
     }
 }
 
@@ -212,26 +207,4 @@ fn listed(columns: &[String]) -> String {
     let more = columns.len().saturating_sub(MOST_LISTED);
     let names = names.join(", ");
     if more == 0 { names } else { format!("{names} and {more} more") }
-}
-
-impl CsvError {
-    /// Returns the advice that ends the error's sentence.
-    #[must_use]
-    pub fn advice(&self) -> &'static str {
-        match self {
-            Self::Read { .. } => advice::DISK,
-            Self::NotUtf8 { .. } => advice::UTF8,
-            Self::NoHeader { .. } => advice::HEADER,
-            Self::Missing { .. } => advice::NAME,
-            Self::Misnamed { .. } => advice::KEY,
-            Self::OneColumn { .. } => advice::SEPARATE,
-            Self::DateWithFactor { .. } => advice::UNITLESS,
-            Self::Repeated { .. } => advice::RENAME,
-            Self::Cell { column, text, .. } => cell_advice(column, text),
-            Self::Time { unit, .. } => time_advice(*unit),
-            Self::NoRow { .. } | Self::NoNumber { .. } => advice::RECORD,
-            Self::LongHeader { .. } | Self::LongLine { .. } => advice::COLUMNS,
-            Self::NoUsableRow { .. } => advice::ROWS,
-        }
-    }
 }

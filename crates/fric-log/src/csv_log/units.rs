@@ -61,10 +61,6 @@ pub const GREAT_INTERVAL_S: f64 = 0.2;
 /// Interval of the samples below which their times are probably days: no winch is recorded at more than 500 kHz, and in days this is 6 Hz.
 const SMALL_INTERVAL_S: f64 = 2e-6;
 
-/// Advice for times whose factor is given already.
-const FACTOR_ADVICE: &str =
-    "if that is wrong, correct the `factor` of `time_s` under `[log.columns]` in the robot file";
-
 /// A unit of time smaller than a second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeUnit {
@@ -83,19 +79,21 @@ impl TimeUnit {
         units.into_iter().find(|(_, factor)| taken_s.abs() * factor < most_s).map(|(unit, _)| unit)
     }
 
-    /// Returns how to state it, the end of a sentence.
-    pub(super) const fn advice(self) -> &'static str {
+    /// Returns its name and the factor to seconds.
+    const fn name_and_factor(self) -> (&'static str, &'static str) {
         match self {
-            Self::Millisecond => {
-                "if it is in milliseconds, give the column of `time_s` `factor = 0.001` under `[log.columns]` in the robot file"
-            }
-            Self::Microsecond => {
-                "if it is in microseconds, give the column of `time_s` `factor = 1e-6` under `[log.columns]` in the robot file"
-            }
-            Self::Nanosecond => {
-                "if it is in nanoseconds, give the column of `time_s` `factor = 1e-9` under `[log.columns]` in the robot file"
-            }
+            Self::Millisecond => ("milliseconds", "0.001"),
+            Self::Microsecond => ("microseconds", "1e-6"),
+            Self::Nanosecond => ("nanoseconds", "1e-9"),
         }
+    }
+
+    /// Returns how to state it, a sentence without its beginning `if` and its full stop.
+    pub(super) fn advice(self) -> String {
+        let (name, factor) = self.name_and_factor();
+        format!(
+            "it is in {name}, give the column of `time_s` `factor = {factor}` under `[log.columns]` in the robot file"
+        )
     }
 }
 
@@ -180,8 +178,12 @@ impl Units {
         } else if interval_s > GREAT_INTERVAL_S
             && let Some(unit) = TimeUnit::of(interval_s, GREAT_INTERVAL_S)
         {
-            let advice = if self.time_has_factor { FACTOR_ADVICE } else { unit.advice() };
-            warnings.push(format!("the time is at least {interval_s:.4} s from row to row; {advice}"));
+            let advice = if self.time_has_factor {
+                "that is wrong, correct the `factor` of `time_s` under `[log.columns]` in the robot file".to_owned()
+            } else {
+                unit.advice()
+            };
+            warnings.push(format!("the time is at least {interval_s:.4} s from row to row; if {advice}"));
         } else if interval_s > 0.0 && interval_s < SMALL_INTERVAL_S && !self.time_has_factor {
             warnings.push(format!(
                 "the time is at least {interval_s:.1e} s from row to row, which looks like a spreadsheet's days: if so, give the column of `time_s` \

@@ -132,26 +132,26 @@ pub(crate) fn open_file(path: &Path) -> Result<(File, u64), RecordingError> {
     Ok((file, len))
 }
 
-/// Returns what a file that is not MCAP may be, and what to do about it.
+/// Returns what a file that is not MCAP may be, and what to do about it, a sentence.
 fn looks_like(mut file: &File) -> io::Result<(&'static str, &'static str)> {
     const RIGHT_FILE: &str =
-        "name a recording (`.mcap`), a CSV table with a header and rows of numbers, or the folder of a bag";
+        "Name a recording (`.mcap`), a CSV table with a header and rows of numbers, or the folder of a bag.";
     let mut start = Vec::new();
     file.by_ref().take(256).read_to_end(&mut start)?;
     Ok(if start.starts_with(b"SQLite format 3\0") {
-        ("it is an SQLite database, as older ROS 2 bags are", "convert it with `ros2 bag convert`")
+        ("it is an SQLite database, as older ROS 2 bags are", "Convert it with `ros2 bag convert`.")
     } else if start.starts_with(b"#ROSBAG") {
-        ("it is a ROS 1 bag", "convert it with `mcap convert`")
+        ("it is a ROS 1 bag", "Convert it with `mcap convert`.")
     } else if start.starts_with(&[0x28, 0xb5, 0x2f, 0xfd]) {
-        ("it is compressed as a whole with zstd", "decompress it with `unzstd`")
+        ("it is compressed as a whole with zstd", "Decompress it with `unzstd`.")
     } else if start.starts_with(&[0x1f, 0x8b]) {
-        ("it is compressed as a whole with gzip", "decompress it with `gunzip`")
+        ("it is compressed as a whole with gzip", "Decompress it with `gunzip`.")
     } else if start.starts_with(b"PK\x03\x04") {
-        ("it is a spreadsheet or another zip archive", "save the sheet as CSV, or unpack it")
+        ("it is a spreadsheet or another zip archive", "Save the sheet as CSV, or unpack it.")
     } else if start.starts_with(b"\x89HDF") || start.starts_with(b"MATLAB 5.0") {
-        ("it is an HDF5 or MATLAB file", "write its signals as CSV")
+        ("it is an HDF5 or MATLAB file", "Write its signals as CSV.")
     } else if start.starts_with(b"PAR1") {
-        ("it is a Parquet file", "write it as CSV")
+        ("it is a Parquet file", "Write it as CSV.")
     } else if std::str::from_utf8(&start).is_ok_and(|text| !text.contains('\0')) {
         ("it is a text file without a table", RIGHT_FILE)
     } else {

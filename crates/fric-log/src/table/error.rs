@@ -3,17 +3,19 @@
 use std::io;
 use std::path::PathBuf;
 
+use miette::Diagnostic;
 use thiserror::Error;
 
 use crate::recording::RecordingError;
 use crate::schema::SchemaError;
 
 /// The reason why a table was refused.
-#[derive(Debug, Error)]
+#[derive(Debug, Diagnostic, Error)]
 #[non_exhaustive]
 pub enum TableError {
     /// The operating system cannot read the file.
-    #[error("cannot read {}: {source}; check the path", path.display())]
+    #[error("cannot read {}: {source}", path.display())]
+    #[diagnostic(help("Check the path."))]
     File {
         /// The file.
         path: PathBuf,
@@ -21,22 +23,22 @@ pub enum TableError {
         source: io::Error,
     },
     /// The file is empty.
-    #[error("{} has no row of numbers below its header; record again", path.display())]
+    #[error("{} has no row of numbers below its header", path.display())]
+    #[diagnostic(help("Record again."))]
     Empty {
         /// The file.
         path: PathBuf,
     },
     /// Its only row has no line end, so its last number may be incomplete.
-    #[error(
-        "{} has no whole row of numbers below its header: its last line has no line end and is left out; if that line is \
-         whole, put a line end behind it", path.display()
-    )]
+    #[error("{} has no whole row of numbers below its header: its last line has no line end and is left out", path.display())]
+    #[diagnostic(help("If that line is whole, put a line end behind it."))]
     CutOff {
         /// The file.
         path: PathBuf,
     },
     /// The file is not text.
-    #[error("{} is neither CSV nor MCAP: line {line} is no UTF-8 text; name another file", path.display())]
+    #[error("{} is neither CSV nor MCAP: line {line} is no UTF-8 text", path.display())]
+    #[diagnostic(help("Name another file."))]
     NotText {
         /// The file.
         path: PathBuf,
@@ -44,10 +46,9 @@ pub enum TableError {
         line: u64,
     },
     /// The file begins with numbers instead of a header.
-    #[error(
-        "{}, line {line}: there are numbers where the names of the columns should be; put a line with the names in front",
-        path.display()
-    )]
+    #[error("{}, line {line}: there are numbers where the names of the columns should be",
+        path.display())]
+    #[diagnostic(help("Put a line with the names in front."))]
     NoHeader {
         /// The file.
         path: PathBuf,
@@ -55,7 +56,8 @@ pub enum TableError {
         line: u64,
     },
     /// A column occurs twice.
-    #[error("{}: column `{column}` stands there twice; take one of the two out", path.display())]
+    #[error("{}: column `{column}` stands there twice", path.display())]
+    #[diagnostic(help("Take one of the two out."))]
     Repeated {
         /// The file.
         path: PathBuf,
@@ -63,7 +65,8 @@ pub enum TableError {
         column: String,
     },
     /// A row has too many or too few cells.
-    #[error("{}, line {line}: {found} cells under a header of {expected}; complete the row or take it out", path.display())]
+    #[error("{}, line {line}: {found} cells under a header of {expected}", path.display())]
+    #[diagnostic(help("Complete the row or take it out."))]
     Length {
         /// The file.
         path: PathBuf,
@@ -75,10 +78,8 @@ pub enum TableError {
         expected: u64,
     },
     /// A cell is not a number.
-    #[error(
-        "{}, line {line}, column `{column}`: `{text}` is no number; write digits, without thousands separators, or leave \
-         the cell empty where there is no value", path.display()
-    )]
+    #[error("{}, line {line}, column `{column}`: `{text}` is no number", path.display())]
+    #[diagnostic(help("Write digits, without thousands separators, or leave the cell empty where there is no value."))]
     Cell {
         /// The file.
         path: PathBuf,
@@ -90,10 +91,8 @@ pub enum TableError {
         text: String,
     },
     /// A log has none of the wanted fields.
-    #[error(
-        "{}: no topic has messages with a field `{example}` or another column of a run (topics: {found}); record one \
-         message a sample, with the columns as its fields", path.display()
-    )]
+    #[error("{}: no topic has messages with a field `{example}` or another column of a run (topics: {found})", path.display())]
+    #[diagnostic(help("Record one message a sample, with the columns as its fields."))]
     NoTopic {
         /// The file.
         path: PathBuf,
@@ -103,7 +102,8 @@ pub enum TableError {
         found: String,
     },
     /// A log has only invalid messages with the wanted fields.
-    #[error("{}: no message on `{topic}` can be used ({problem}); record again", path.display())]
+    #[error("{}: no message on `{topic}` can be used ({problem})", path.display())]
+    #[diagnostic(help("Record again."))]
     NoUsableMessage {
         /// The file.
         path: PathBuf,
@@ -113,7 +113,8 @@ pub enum TableError {
         problem: String,
     },
     /// Several topics have wanted fields.
-    #[error("{}: columns of a run are on several topics ({topics}); put them into the messages of one", path.display())]
+    #[error("{}: columns of a run are on several topics ({topics})", path.display())]
+    #[diagnostic(help("Put them into the messages of one."))]
     SeveralTopics {
         /// The file.
         path: PathBuf,
@@ -122,9 +123,11 @@ pub enum TableError {
     },
     /// The log cannot be read.
     #[error(transparent)]
+    #[diagnostic(transparent)]
     Recording(#[from] RecordingError),
     /// A wanted field is not a number.
-    #[error("{}, topic `{topic}`: {source}; record numbers", path.display())]
+    #[error("{}, topic `{topic}`: {source}", path.display())]
+    #[diagnostic(help("Record numbers."))]
     Schema {
         /// The file.
         path: PathBuf,

@@ -62,7 +62,7 @@ fn read_files(files: &[(&str, &[u8])], columns: &[(&str, ColumnTable)]) -> Read 
     let log = match Log::open(&paths) {
         Ok(log) => log,
         Err(error) => {
-            read.error = Some(error.to_string());
+            read.error = Some(fric_log::with_advice(&error));
             return read;
         }
     };
@@ -82,7 +82,7 @@ fn read_files(files: &[(&str, &[u8])], columns: &[(&str, ColumnTable)]) -> Read 
             }
             Ok(None) => break,
             Err(error) => {
-                read.error = Some(error.to_string());
+                read.error = Some(fric_log::with_advice(&error));
                 break;
             }
         }
@@ -202,7 +202,7 @@ fn what_cannot_be_used_is_told_with_its_place() {
     read(&format!("{header}0,,\n1,,nan\n")).fails(&["no row has a number"]);
     read(&format!("{header}0,1\n1,1\n")).fails(&["no row that can be used", "line 2 has 2 cells under a header of 3"]);
     for separator in [",", ";", "\t", "  "] {
-        read(&"0,1,2\n0.001,1,2\n".replace(',', separator)).fails(&["line 1", "numbers where the names", "put a line"]);
+        read(&"0,1,2\n0.001,1,2\n".replace(',', separator)).fails(&["line 1", "numbers where the names", "Put a line"]);
     }
     read("time force length\n0 1\n0.1 1 2 3\n")
         .fails(&["one column alone, `time force length`", "as many in each row"]);

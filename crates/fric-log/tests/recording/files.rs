@@ -7,7 +7,7 @@ use fric_log::recording::{Recording, RecordingError};
 use super::support::{Storage, file_of, open, options, read_all, samples, to_file, write};
 
 fn error(bytes: &[u8]) -> String {
-    open(bytes).expect_err("no recording").to_string()
+    fric_log::with_advice(&open(bytes).expect_err("no recording"))
 }
 
 #[test]

@@ -206,7 +206,7 @@ impl Joined {
     }
 
     pub fn sentence(&self) -> String {
-        self.error.as_ref().unwrap().to_string()
+        fric_log::with_advice(self.error.as_ref().unwrap())
     }
 
     pub fn problem(&self, role: Role) -> &str {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use fric_log::table::NumberTable;
+use fric_log::with_advice;
 use fric_log::write::LogWriter;
 use tempfile::TempDir;
 
@@ -24,7 +25,7 @@ impl Place {
 
     fn csv(&self, text: impl AsRef<[u8]>) -> Result<NumberTable, String> {
         std::fs::write(self.path("t.csv"), text).unwrap();
-        NumberTable::read(&self.path("t.csv"), &wanted()).map_err(|error| error.to_string())
+        NumberTable::read(&self.path("t.csv"), &wanted()).map_err(|error| with_advice(&error))
     }
 
     /// A log with JSON messages, each with its topic and log time in seconds.
@@ -46,7 +47,7 @@ impl Place {
             writer.write_to_known_channel(&header, text.as_bytes()).unwrap();
         }
         writer.finish().unwrap();
-        NumberTable::read(&self.path("t.mcap"), &wanted()).map_err(|error| error.to_string())
+        NumberTable::read(&self.path("t.mcap"), &wanted()).map_err(|error| with_advice(&error))
     }
 }
 
@@ -68,18 +69,18 @@ fn text_that_is_no_table_is_told() {
         let sentence = place.csv(text).unwrap_err();
         sentence.rsplit_once("t.csv").unwrap().1.to_owned()
     };
-    assert_eq!(said(""), " has no row of numbers below its header; record again");
-    assert_eq!(said("a,b\n"), " has no row of numbers below its header; record again");
+    assert_eq!(said(""), " has no row of numbers below its header. Record again.");
+    assert_eq!(said("a,b\n"), " has no row of numbers below its header. Record again.");
     let no_header =
-        ", line 1: there are numbers where the names of the columns should be; put a line with the names in front";
+        ", line 1: there are numbers where the names of the columns should be. Put a line with the names in front.";
     assert_eq!(said("1,2\n3,4\n"), no_header);
-    assert!(said("a;b\n1,5;2\n1.5;2\n").starts_with(", line 3, column `a`: `1.5` is no number; "));
-    assert_eq!(said("a,b,a\n1,2,3\n"), ": column `a` stands there twice; take one of the two out");
-    assert_eq!(said("a,b\n1,2\n1,2,3\n"), ", line 3: 3 cells under a header of 2; complete the row or take it out");
-    assert!(said("a,b\n1,2\n1,two\n").starts_with(", line 3, column `b`: `two` is no number; "));
+    assert!(said("a;b\n1,5;2\n1.5;2\n").starts_with(", line 3, column `a`: `1.5` is no number. "));
+    assert_eq!(said("a,b,a\n1,2,3\n"), ": column `a` stands there twice. Take one of the two out.");
+    assert_eq!(said("a,b\n1,2\n1,2,3\n"), ", line 3: 3 cells under a header of 2. Complete the row or take it out.");
+    assert!(said("a,b\n1,2\n1,two\n").starts_with(", line 3, column `b`: `two` is no number. "));
     assert!(place.csv(b"a,b\n1,\xff\n").unwrap_err().contains("is neither CSV nor MCAP: line 2"));
-    let missing = NumberTable::read(&place.path("none.csv"), &wanted()).unwrap_err().to_string();
-    assert!(missing.contains("none.csv") && missing.ends_with("check the path"), "{missing}");
+    let missing = with_advice(&NumberTable::read(&place.path("none.csv"), &wanted()).unwrap_err());
+    assert!(missing.contains("none.csv") && missing.ends_with(". Check the path."), "{missing}");
 }
 
 #[test]
@@ -107,8 +108,8 @@ fn a_last_line_that_is_cut_off_is_left_out_and_told() {
 fn a_table_of_one_line_that_is_cut_off_says_what_is_missing() {
     for text in ["a,b\n1,2", "a,b\r\n1,"] {
         let sentence = Place::new().csv(text).unwrap_err();
-        assert!(sentence.contains("t.csv has no whole row of numbers below its header"), "{sentence}");
-        assert!(sentence.ends_with("; if that line is whole, put a line end behind it"), "{sentence}");
+        assert!(sentence.contains("t.csv has no whole row of numbers below its header: "), "{sentence}");
+        assert!(sentence.ends_with(". If that line is whole, put a line end behind it."), "{sentence}");
     }
 }
 
@@ -183,7 +184,7 @@ fn a_log_without_a_usable_message_says_why() {
     let whole = std::fs::read(place.path("t.mcap")).unwrap();
     // Without its end: what is damaged is said beside what is missing.
     std::fs::write(place.path("cut.mcap"), &whole[..60]).unwrap();
-    let sentence = NumberTable::read(&place.path("cut.mcap"), &wanted()).unwrap_err().to_string();
+    let sentence = with_advice(&NumberTable::read(&place.path("cut.mcap"), &wanted()).unwrap_err());
     assert!(sentence.contains("(topics: none; `") && sentence.contains("cut off"), "{sentence}");
 
     let file = std::fs::File::create(place.path("t.mcap")).unwrap();
@@ -193,9 +194,9 @@ fn a_log_without_a_usable_message_says_why() {
     let header = mcap::records::MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
     writer.write_to_known_channel(&header, &[0, 1, 0, 0, 0]).unwrap();
     writer.finish().unwrap();
-    let sentence = NumberTable::read(&place.path("t.mcap"), &wanted()).unwrap_err().to_string();
+    let sentence = with_advice(&NumberTable::read(&place.path("t.mcap"), &wanted()).unwrap_err());
     assert!(
-        sentence.contains("no message on `/run` can be used (") && sentence.ends_with("; record again"),
+        sentence.contains("no message on `/run` can be used (") && sentence.ends_with(". Record again."),
         "{sentence}"
     );
 }

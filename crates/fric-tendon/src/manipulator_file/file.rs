@@ -191,7 +191,7 @@ pub struct ManipulatorFile {
 #[non_exhaustive]
 pub enum ManipulatorFileError {
     /// The file cannot be read.
-    #[error("cannot read the manipulator file {}: {source}; check the path", path.display())]
+    #[error("cannot read the manipulator file {}: {source}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
