@@ -9,6 +9,7 @@ use fric_log::output::{CompleteFile, OutputFile, directory_of};
 use fric_work::provenance::Provenance;
 use serde::Serialize;
 
+use crate::arguments::ResultArguments;
 use crate::command;
 use crate::failure::{Failure, Outcome};
 use crate::terminal;
@@ -31,11 +32,14 @@ pub fn check_distinct(outputs: &[Option<&Path>]) -> Outcome {
     Ok(())
 }
 
-/// The destination of the machine-readable result, and the origin that it states.
+/// The page and the JSON of a result, and the other files of the command that makes it.
 #[derive(Debug)]
-pub struct JsonTarget {
-    place: JsonPlace,
+pub struct Outputs {
+    json: JsonPlace,
+    report: Option<OutputFile>,
+    files: Vec<Written>,
     inputs: Vec<PathBuf>,
+    force: bool,
 }
 
 #[derive(Debug)]
@@ -45,31 +49,53 @@ enum JsonPlace {
     File(OutputFile),
 }
 
-impl JsonTarget {
-    pub fn prepare(path: Option<&Path>, inputs: &[PathBuf], force: bool) -> Outcome<Self> {
-        let place = match path {
+impl Outputs {
+    /// Checks the places of the result's files, and of `others`, before any input is read.
+    pub fn check(arguments: &ResultArguments, others: &[Option<&Path>]) -> Outcome {
+        let json_file = arguments.json.as_deref().filter(|path| !is_stdout(path));
+        check_distinct(&[others, &[json_file]].concat())
+    }
+
+    /// Creates the named ones of page and JSON.
+    pub fn create(arguments: &ResultArguments, report: Option<&Path>, inputs: Vec<PathBuf>) -> Outcome<Self> {
+        let &ResultArguments { ref json, force } = arguments;
+        let json = match json {
             None => JsonPlace::Nowhere,
             Some(path) if is_stdout(path) => JsonPlace::Stdout,
-            Some(path) => JsonPlace::File(OutputFile::create(path, inputs, force)?),
+            Some(path) => JsonPlace::File(OutputFile::create(path, &inputs, force)?),
         };
-        Ok(Self { place, inputs: inputs.to_vec() })
+        let report = report.map(|path| OutputFile::create(path, &inputs, force)).transpose()?;
+        Ok(Self { json, report, files: Vec::new(), inputs, force })
     }
 
-    /// Returns program, command and inputs of the result; reads the inputs for their hashes.
-    pub fn provenance(&self) -> Provenance {
-        provenance(&self.inputs)
+    /// Creates another file of the command.
+    pub fn file(&self, path: &Path) -> Outcome<OutputFile> {
+        Ok(OutputFile::create(path, &self.inputs, self.force)?)
     }
 
-    /// Ends a command: puts its complete outputs in their places and shows a text to people, on stdout, or on stderr if stdout takes the JSON.
-    pub fn finish(self, result: &impl Serialize, text: &str, files: Vec<Written>) -> Outcome {
-        self.finish_then(result, text, files, "")
+    pub fn has_report(&self) -> bool {
+        self.report.is_some()
     }
 
-    /// Does the same with the next step on a final line.
-    pub fn finish_then(self, result: &impl Serialize, text: &str, mut files: Vec<Written>, next: &str) -> Outcome {
-        let Self { place: target, inputs } = self;
+    /// Adds a complete file with a description of its content.
+    pub fn add(&mut self, file: CompleteFile, what: impl Into<String>) {
+        self.files.push(Written::new(file, what));
+    }
+
+    /// Writes the page if it is named.
+    pub fn write_report(&mut self, page: impl FnOnce(&Provenance) -> String) -> Outcome {
+        if let Some(report) = self.report.take() {
+            self.add(report.complete_with(&page(&provenance(&self.inputs)))?, "the report");
+        }
+        Ok(())
+    }
+
+    /// Ends a command: puts all complete files in their places and shows a text to people, with the next step if there is one, on
+    /// stdout, or on stderr if stdout takes the JSON.
+    pub fn finish(self, result: &impl Serialize, text: &str, next: &str) -> Outcome {
+        let Self { json, mut files, inputs, .. } = self;
         let as_json = || as_json(result, &provenance(&inputs));
-        match target {
+        match json {
             JsonPlace::Nowhere => show_with(text, files, next),
             JsonPlace::File(file) => {
                 files.push(Written::new(file.complete_with(&as_json()?)?, "the result as JSON"));
@@ -153,7 +179,7 @@ pub fn print(bytes: &[u8]) -> Outcome {
 }
 
 /// Whether the path is `-`, which means stdout.
-pub fn is_stdout(path: &Path) -> bool {
+fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 

@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use fric_lab::discover::DiscoverOptions;
-use fric_log::output::OutputFile;
 use fric_work::{discover, report};
 
 use super::continuum;
 use crate::arguments::DiscoverArguments;
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{self, check_named_once, find_model};
-use crate::output::{self, JsonTarget, Written};
+use crate::output::Outputs;
 use crate::supervision::Watch;
 
 /// Runs the command.
@@ -23,35 +22,26 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
         return Err(Failure::usage(format!("{} is the run of a manipulator, whose file is not named", run.display()))
             .advise("Name it with --model, such as examples/tendon-prototype.toml with calibrated gratings."));
     }
-    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
+    Outputs::check(result, &[output.as_deref(), report.as_deref()])?;
     check_named_once(logs)?;
     let part = part.part()?;
     let per_log = per_log.zero(logs.len(), *reference)?;
     let mut inputs = logs.clone();
     inputs.extend(model.clone());
     let model = find_model(model.as_deref(), logs)?;
-    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
-    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
-    let extended_file = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
+    let mut outputs = Outputs::create(result, report.as_deref(), inputs)?;
+    let extended_file = output.as_ref().map(|path| outputs.file(path)).transpose()?;
 
     let mut watch = Watch::default();
     let runs = measurements::read(logs, part, &model, (*reference).into(), per_log, &mut watch)?;
-    let options = DiscoverOptions { empirical: !no_empirical, series: report.is_some() };
+    let options = DiscoverOptions { empirical: !no_empirical, series: outputs.has_report() };
     let (outcome, found) = discover::run(&runs, &options, &mut watch)?;
-    let mut files = Vec::new();
     if let Some(file) = extended_file {
-        files.push(Written::new(
-            file.complete_with(&found.extended(&model.text, &model.origin)?)?,
-            "the robot file with what was found",
-        ));
+        let text = found.extended(&model.text, &model.origin)?;
+        outputs.add(file.complete_with(&text)?, "the robot file with what was found");
     }
-    if let Some(report) = report {
-        let page = report::discovery::page(&outcome, found.cables(), &json.provenance());
-        files.push(Written::new(report.complete_with(&page)?, "the report"));
-    }
-    let next = next_step(logs, output.as_deref());
-    json.finish_then(&outcome, &outcome.summary(), files, &next)
+    outputs.write_report(|provenance| report::discovery::page(&outcome, found.cables(), provenance))?;
+    outputs.finish(&outcome, &outcome.summary(), &next_step(logs, output.as_deref()))
 }
 
 /// Returns the usual next step of a user.

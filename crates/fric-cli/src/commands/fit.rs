@@ -1,14 +1,13 @@
 //! `fit`: the parameters of the friction model from the log of an identification run.
 
 use fric_lab::fit::{FitOptions, Parameter, Weighing};
-use fric_log::output::OutputFile;
 use fric_work::{fit, fit_report, report, verdict};
 
 use super::continuum;
 use crate::arguments::FitArguments;
 use crate::failure::{Failure, Outcome};
 use crate::measurements::{self, check_named_once, find_model};
-use crate::output::{self, JsonTarget, Written};
+use crate::output::Outputs;
 use crate::supervision::Watch;
 
 /// Runs the command.
@@ -21,8 +20,7 @@ pub fn run(arguments: &FitArguments) -> Outcome {
         ))
         .advise("Use `fric-cli continuum fit RUN --model M.toml -o FITTED.toml`."));
     }
-    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[Some(output), report.as_deref(), json_file])?;
+    Outputs::check(result, &[Some(output), report.as_deref()])?;
     check_named_once(logs)?;
     let part = part.part()?;
     let options = FitOptions {
@@ -33,21 +31,17 @@ pub fn run(arguments: &FitArguments) -> Outcome {
     let mut inputs = logs.clone();
     inputs.extend(model.clone());
     let model = find_model(model.as_deref(), logs)?;
-    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
-    let fitted_file = OutputFile::create(output, &inputs, result.force)?;
-    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
+    let mut outputs = Outputs::create(result, report.as_deref(), inputs)?;
+    let fitted_file = outputs.file(output)?;
 
     let mut watch = Watch::default();
     let runs = measurements::read(logs, part, &model, (*reference).into(), per_log, &mut watch)?;
     let fitted = fit::run(&runs, &options, None, &mut watch)?;
     let (outcome, cables) = (&fitted.result, fitted.fits.cables());
     let text = fitted.rewritten(&model.text, &model.origin)?;
-    let mut files = vec![Written::new(fitted_file.complete_with(&text)?, "the robot file with these values")];
-    if let Some(report) = report {
-        let page = report::fit::page(outcome, cables, &json.provenance());
-        files.push(Written::new(report.complete_with(&page)?, "the report"));
-    }
-    json.finish_then(outcome, &fit_report::summary(outcome), files, &verdict::of_fit(outcome).steps())
+    outputs.add(fitted_file.complete_with(&text)?, "the robot file with these values");
+    outputs.write_report(|provenance| report::fit::page(outcome, cables, provenance))?;
+    outputs.finish(outcome, &fit_report::summary(outcome), &verdict::of_fit(outcome).steps())
 }
 
 /// Returns the parameters named on the command line.

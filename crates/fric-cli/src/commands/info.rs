@@ -12,10 +12,9 @@ use fric_core::robot::file::FROM_LENGTHS;
 use fric_core::text_file::printable;
 use fric_lab::fit::readiness::{self, Holdings, Readiness};
 use fric_lab::text::{table, table_with_text};
-use fric_log::CsvError;
 use fric_log::log::Log;
-use fric_log::output::OutputFile;
 use fric_log::signals::{Part, Role, SignalError, SignalReader};
+use fric_log::{CsvError, with_advice};
 use fric_work::report::SignalSeries;
 use fric_work::source::read;
 use serde::Serialize;
@@ -25,7 +24,7 @@ use crate::arguments::InfoArguments;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::model::Model;
-use crate::output::{self, JsonTarget, Written};
+use crate::output::Outputs;
 use crate::progress::{self, STRIDE};
 use crate::steps::{StepResult, step_table};
 use crate::supervision::Watch;
@@ -90,17 +89,15 @@ fn seconds(nanos: u64) -> f64 {
 /// Runs the command.
 pub fn run(arguments: &InfoArguments) -> Outcome {
     let InfoArguments { log, report, wide, result } = arguments;
-    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[report.as_deref(), json_file])?;
+    Outputs::check(result, &[report.as_deref()])?;
     let mut inputs = log.logs.clone();
     inputs.extend(log.model.clone());
-    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
-    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
+    let mut outputs = Outputs::create(result, report.as_deref(), inputs)?;
     if let [only] = log.logs.as_slice()
         && (continuum::is_manipulator(log.model.as_deref()) || log.model.is_none() && continuum::is_text_run(only))
     {
         log.part.check_none()?;
-        return continuum::info::run(only, log.model.as_deref(), json, report);
+        return continuum::info::run(only, log.model.as_deref(), outputs);
     }
     let part = log.part.part()?;
     let mut source = Log::open(&log.logs)?;
@@ -118,7 +115,7 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
     }
     let mut storage = StorageResult::new(&source.storage(), &topics, first_nanos);
     let cables = model.as_ref().map_or_else(Vec::new, |model| model.robot.cable_names());
-    let mut series = report.as_ref().filter(|_| model.is_some()).map(|_| SignalSeries::new(cables.len()));
+    let mut series = (outputs.has_report() && model.is_some()).then(|| SignalSeries::new(cables.len()));
     let (signals, steps) = match &model {
         Some(model) => {
             let read = read_signals(model, Log::open(&log.logs)?, part, series.as_mut())?;
@@ -136,11 +133,8 @@ pub fn run(arguments: &InfoArguments) -> Outcome {
         signals,
         steps,
     };
-    let page =
-        |report: OutputFile| report.complete_with(&overview::page(&outcome, &cables, series, &json.provenance()));
-    let page = report.map(page).transpose()?.map(|page| Written::new(page, "the report"));
-    let text = describe(&outcome, model.as_ref(), &attachments, *wide);
-    json.finish(&outcome, &text, page.into_iter().collect())
+    outputs.write_report(|provenance| overview::page(&outcome, &cables, series, provenance))?;
+    outputs.finish(&outcome, &describe(&outcome, model.as_ref(), &attachments, *wide), "")
 }
 
 /// Returns the topics, and the time of the first message.
@@ -213,7 +207,7 @@ fn read_signals(model: &Model, log: Log, part: Part, mut series: Option<&mut Sig
         Err(SignalError::Recording(error)) => return Err(error.into()),
         // The robot file is wrong.
         Err(error @ SignalError::Csv(CsvError::Misnamed { .. })) => return Err(error.into()),
-        Err(error) => Some(error.to_string()),
+        Err(error) => Some(with_advice(&error)),
     };
     let mut signals = signal_results(&reader);
     if reader.log().column_names().is_some() {

@@ -1,7 +1,6 @@
 //! `discover` with a manipulator file.
 
 use fric_lab::fit::Progress;
-use fric_log::output::OutputFile;
 use fric_tendon::edit::rewrite;
 use fric_tendon_lab::discover::discover;
 use fric_tendon_lab::{Run, columns};
@@ -9,7 +8,7 @@ use fric_tendon_lab::{Run, columns};
 use super::{Model, about, read_table};
 use crate::arguments::{DiscoverArguments, ReferenceName};
 use crate::failure::{Failure, Outcome};
-use crate::output::{self, JsonTarget, Written};
+use crate::output::Outputs;
 use crate::supervision::Watch;
 use crate::warnings::warn_all;
 use fric_work::provenance::shown_path;
@@ -29,18 +28,16 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
         return Err(Failure::usage("`--no-empirical` is for cables: a manipulator's rest never becomes a table")
             .advise("Leave it out."));
     }
-    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[output.as_deref(), report.as_deref(), json_file])?;
+    Outputs::check(result, &[output.as_deref(), report.as_deref()])?;
     let ([log], Some(model)) = (logs.as_slice(), model) else {
         return Err(
             Failure::usage("a manipulator's runs are looked at one by one").advise("Name one run and its --model.")
         );
     };
-    let inputs = [log.clone(), model.clone()];
+    let inputs = vec![log.clone(), model.clone()];
     let model = Model::read(model)?;
-    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
-    let report = report.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
-    let extended = output.as_ref().map(|path| OutputFile::create(path, &inputs, result.force)).transpose()?;
+    let mut outputs = Outputs::create(result, report.as_deref(), inputs)?;
+    let extended = output.as_ref().map(|path| outputs.file(path)).transpose()?;
     let table = read_table(log, &columns::of_run(model.disk_count()))?;
     let run = Run::from_columns(&table, model.disk_count()).map_err(|error| about(log, error))?;
     let shown = shown_path(log);
@@ -48,14 +45,10 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let found = Watch::default().compute("searching", "searches", look)?.map_err(|error| about(log, error))?;
     let noise = found.base_noise.map(|noise| noise.warning());
     warn_all(&run.begin_warning().into_iter().chain(noise).collect::<Vec<_>>());
-    let mut files = Vec::new();
     if let Some(file) = extended {
         let text = rewrite(&model.text, &model.origin, &found.edit)?;
-        files.push(Written::new(file.complete_with(&text)?, "the manipulator file with what was found"));
+        outputs.add(file.complete_with(&text)?, "the manipulator file with what was found");
     }
-    if let Some(report) = report {
-        let page = report::continuum::discovery(&found, &json.provenance());
-        files.push(Written::new(report.complete_with(&page)?, "the report"));
-    }
-    json.finish(&found.result, &found.result.summary(), files)
+    outputs.write_report(|provenance| report::continuum::discovery(&found, provenance))?;
+    outputs.finish(&found.result, &found.result.summary(), "")
 }

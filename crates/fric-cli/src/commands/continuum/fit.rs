@@ -1,7 +1,6 @@
 //! `continuum fit`: identifies a manipulator's numbers from its runs.
 
 use fric_lab::fit::Progress;
-use fric_log::output::OutputFile;
 use fric_tendon::edit::rewrite;
 use fric_tendon_lab::identify::{Quantity, TendonFitOptions, identify};
 use fric_tendon_lab::{Run, columns};
@@ -12,15 +11,14 @@ use super::{Model, about, read_table};
 use crate::arguments::continuum::TendonFitArguments;
 use crate::failure::{Failure, Outcome};
 use crate::measurements::check_named_once;
-use crate::output::{self, JsonTarget, Written};
+use crate::output::Outputs;
 use crate::supervision::Watch;
 use crate::warnings::warn_all;
 
 /// Runs the command.
 pub fn run(arguments: &TendonFitArguments) -> Outcome {
     let TendonFitArguments { runs, model, output, parameters, result } = arguments;
-    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[Some(output), json_file])?;
+    Outputs::check(result, &[Some(output)])?;
     check_named_once(runs)?;
     let named = |names: &Vec<String>| {
         Quantity::all_named(names.iter().map(|name| name.trim()))
@@ -30,8 +28,8 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
     let mut inputs = runs.clone();
     inputs.push(model.clone());
     let model = Model::read(model)?;
-    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
-    let file = OutputFile::create(output, &inputs, result.force)?;
+    let mut outputs = Outputs::create(result, None, inputs)?;
+    let file = outputs.file(output)?;
     let mut measured = Vec::with_capacity(runs.len());
     for path in runs {
         let table = read_table(path, &columns::of_run(model.disk_count()))?;
@@ -51,6 +49,6 @@ pub fn run(arguments: &TendonFitArguments) -> Outcome {
     let fitted = file.complete_with(&rewrite(&model.text, &model.origin, &found.edit)?)?;
     let is_changed = !found.result.parameters.0.is_empty() || !found.edit.lines.is_empty();
     let what = if is_changed { "the manipulator file with these values" } else { "the manipulator file as it was" };
-    let files = vec![Written::new(fitted, what)];
-    json.finish(&found.result, &found.result.summary(), files)
+    outputs.add(fitted, what);
+    outputs.finish(&found.result, &found.result.summary(), "")
 }

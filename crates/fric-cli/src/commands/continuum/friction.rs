@@ -3,16 +3,19 @@
 use fric_tendon_lab::ContinuumError;
 use fric_tendon_lab::result::FrictionResult;
 
-use super::{Outputs, about, read_gratings, read_run};
+use super::{about, read_gratings, read_run};
 use crate::arguments::continuum::FrictionArguments;
 use crate::failure::Outcome;
+use crate::output::Outputs;
 use crate::warnings::{warn, warn_all};
 use fric_work::report::continuum;
 
 /// Runs the command.
 pub fn run(arguments: &FrictionArguments) -> Outcome {
     let FrictionArguments { run: paths, page } = arguments;
-    let outputs = Outputs::prepare(page, &[paths.run.clone(), paths.model.clone()], None)?;
+    Outputs::check(&page.result, &[page.report.as_deref()])?;
+    let inputs = vec![paths.run.clone(), paths.model.clone()];
+    let mut outputs = Outputs::create(&page.result, page.report.as_deref(), inputs)?;
     let (model, run) = read_run(paths)?;
     if !run.has_shifts() {
         return Err(about(
@@ -32,5 +35,6 @@ pub fn run(arguments: &FrictionArguments) -> Outcome {
     if !run.has_tension() {
         warn("the run has no `tension_base_n`: friction at hole 1 is not known");
     }
-    outputs.finish(&result, &result.summary(), |provenance| continuum::friction(&result, provenance), Vec::new())
+    outputs.write_report(|provenance| continuum::friction(&result, provenance))?;
+    outputs.finish(&result, &result.summary(), "")
 }

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use fric_lab::text::table_with_text;
-use fric_log::output::OutputFile;
 use fric_log::table::NumberTable;
 use fric_tendon_lab::gratings::Gratings;
 use fric_tendon_lab::{Run, columns};
@@ -12,7 +11,7 @@ use serde::Serialize;
 
 use super::{Model, about};
 use crate::failure::Outcome;
-use crate::output::{JsonTarget, Written};
+use crate::output::Outputs;
 use crate::steps::{StepResult, step_table};
 use crate::warnings::warn_all;
 
@@ -41,7 +40,7 @@ struct GroupResult {
 const DISKS: usize = fric_tendon::MAX_DISKS;
 
 /// Shows the content of a run. Without a model the number of disks is that of its columns.
-pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget, report: Option<OutputFile>) -> Outcome {
+pub fn run(path: &Path, model: Option<&Path>, mut outputs: Outputs) -> Outcome {
     let model = model.map(Model::read).transpose()?;
     let disk_count = model.as_ref().map(Model::disk_count);
     let read = NumberTable::read(path, &columns::of_run(disk_count.unwrap_or(DISKS)))?;
@@ -66,9 +65,8 @@ pub fn run(path: &Path, model: Option<&Path>, json: JsonTarget, report: Option<O
         groups: groups(&run, gratings.as_ref()),
         steps: steps(&run, gratings.as_ref()),
     };
-    let page = report.map(|report| report.complete_with(&info::page(&overview(&outcome), &json.provenance())));
-    let page = page.transpose()?.map(|page| Written::new(page, "the report"));
-    json.finish(&outcome, &describe(&outcome, path), page.into_iter().collect())
+    outputs.write_report(|provenance| info::page(&overview(&outcome), provenance))?;
+    outputs.finish(&outcome, &describe(&outcome, path), "")
 }
 
 /// Returns the content of the page.

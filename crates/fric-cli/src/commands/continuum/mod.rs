@@ -13,21 +13,18 @@ mod track;
 
 use std::fs::{self, File, Metadata};
 use std::io::Read as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use fric_core::text_file;
-use fric_log::output::OutputFile;
 use fric_log::table::NumberTable;
 use fric_tendon::file::{FORMAT, ManipulatorFile};
 use fric_tendon_lab::gratings::Gratings;
 use fric_tendon_lab::guard::Guarded;
 use fric_tendon_lab::{ContinuumError, Run, columns, corrected};
-use fric_work::provenance::Provenance;
 
-use crate::arguments::continuum::{ContinuumCommand, ReportArguments, RunArguments};
+use crate::arguments::continuum::{ContinuumCommand, RunArguments};
 use crate::failure::{Failure, Outcome};
 use crate::model::{has_format, read_text};
-use crate::output::{self, JsonTarget, Written};
 use crate::warnings::warn_all;
 
 /// Maximum length of a text run's header, in bytes.
@@ -125,37 +122,5 @@ fn read_gratings(path: &Path, model: &Model, run: &Run) -> Outcome<Option<Guarde
             Ok(Some(Guarded::read(model.file.params(), &gratings, run).map_err(|error| about(path, error))?))
         }
         _ => Ok(None),
-    }
-}
-
-/// Outputs other than the table.
-struct Outputs {
-    json: JsonTarget,
-    report: Option<OutputFile>,
-}
-
-impl Outputs {
-    /// Checks the places of all outputs; `also` is an additional one of the command.
-    fn prepare(page: &ReportArguments, inputs: &[PathBuf], also: Option<&Path>) -> Outcome<Self> {
-        let ReportArguments { report, result } = page;
-        let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-        output::check_distinct(&[also, json_file, report.as_deref()])?;
-        let json = JsonTarget::prepare(result.json.as_deref(), inputs, result.force)?;
-        let report = report.as_ref().map(|path| OutputFile::create(path, inputs, result.force)).transpose()?;
-        Ok(Self { json, report })
-    }
-
-    /// Writes page, table and JSON, together with `files`.
-    fn finish(
-        self,
-        result: &impl serde::Serialize,
-        summary: &str,
-        page: impl FnOnce(&Provenance) -> String,
-        mut files: Vec<Written>,
-    ) -> Outcome {
-        if let Some(report) = self.report {
-            files.push(Written::new(report.complete_with(&page(&self.json.provenance()))?, "the report"));
-        }
-        self.json.finish(result, summary, files)
     }
 }

@@ -6,9 +6,10 @@ use fric_tendon_lab::gratings::Gratings;
 use fric_tendon_lab::result::ShapeResult;
 use fric_tendon_lab::shape_errors::Way;
 
-use super::{Outputs, about, read_gratings, read_run};
+use super::{about, read_gratings, read_run};
 use crate::arguments::continuum::{ShapeArguments, WayName};
 use crate::failure::{Failure, Outcome};
+use crate::output::Outputs;
 use crate::warnings::{warn, warn_all};
 use fric_work::report::continuum;
 
@@ -25,7 +26,9 @@ fn way_of(name: WayName) -> Way {
 pub fn run(arguments: &ShapeArguments) -> Outcome {
     let ShapeArguments { run: paths, shapes, at_s, mixed, ways, wide, page } = arguments;
     let wanted: Vec<Way> = ways.iter().map(|way| way_of(*way)).collect();
-    let outputs = Outputs::prepare(page, &[paths.run.clone(), paths.model.clone()], None)?;
+    Outputs::check(&page.result, &[page.report.as_deref()])?;
+    let inputs = vec![paths.run.clone(), paths.model.clone()];
+    let mut outputs = Outputs::create(&page.result, page.report.as_deref(), inputs)?;
     let (model, run) = read_run(paths)?;
     let params = model.file.params();
     run.check_sizes(params).map_err(|error| about(&paths.run, error))?;
@@ -48,7 +51,7 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
         None => Selection::Spread(usize::from(*shapes)),
     };
     let picked = selection.places(&run, measured).map_err(|error| match error {
-        ContinuumError::NotWithinRun { .. } => Failure::usage(format!("--at-s: {error}")),
+        ContinuumError::NotWithinRun { .. } => Failure::from(error).of_option("--at-s"),
         error => about(&paths.run, error),
     })?;
     if picked.is_empty() {
@@ -60,10 +63,6 @@ pub fn run(arguments: &ShapeArguments) -> Outcome {
     if let Some(Err(error)) = Gratings::from_file(&model.file)?.map(|one| one.check_travel(params, greatest_rad)) {
         return Err(about(&paths.run, error));
     }
-    outputs.finish(
-        &result,
-        &result.table(*wide),
-        |provenance| continuum::shape(&result, &run, &ways, provenance),
-        Vec::new(),
-    )
+    outputs.write_report(|provenance| continuum::shape(&result, &run, &ways, provenance))?;
+    outputs.finish(&result, &result.table(*wide), "")
 }

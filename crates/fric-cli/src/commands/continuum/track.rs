@@ -14,7 +14,7 @@ use super::rows::{Channel, RowsFile, is_mcap};
 use super::{Model, about, read_run, read_table};
 use crate::arguments::continuum::{CompensationName, RunArguments, TrackArguments};
 use crate::failure::{Failure, Outcome};
-use crate::output::{self, JsonTarget, Written};
+use crate::output::Outputs;
 use crate::warnings::{warn, warn_all};
 
 /// Commands in MCAP.
@@ -32,13 +32,12 @@ const FLAGS: [(&str, GoalStatus); 5] = [
 /// Runs the command.
 pub fn run(arguments: &TrackArguments) -> Outcome {
     let TrackArguments { path: path_file, output, after, result, .. } = arguments;
-    let json_file = result.json.as_deref().filter(|path| !output::is_stdout(path));
-    output::check_distinct(&[output.as_deref(), json_file])?;
+    Outputs::check(result, &[output.as_deref()])?;
     let inputs: Vec<PathBuf> =
         [Some(path_file), Some(&arguments.model), after.as_ref()].into_iter().flatten().cloned().collect();
     let model = Model::read(&arguments.model)?;
     let drive = drive(arguments, &model)?;
-    let json = JsonTarget::prepare(result.json.as_deref(), &inputs, result.force)?;
+    let mut outputs = Outputs::create(result, None, inputs.clone())?;
     let rows_file = output.as_ref().map(|path| RowsFile::create(path, &inputs, result.force)).transpose()?;
     let path = GoalPath::from_columns(&read_table(path_file, &columns::of_path())?)
         .map_err(|error| about(path_file, error))?;
@@ -94,12 +93,10 @@ pub fn run(arguments: &TrackArguments) -> Outcome {
     let simulation = if arguments.simulate { Some(simulated(arguments, &model, goals)?) } else { None };
     let outcome = TrackResult::new(model.name(), way, path.time_s(), path.goals(), &answers, simulation);
     warn_all(&outcome.warnings());
-    let mut files = Vec::new();
     if let Some(file) = rows_file {
-        let what = format!("the tensions for {} goals", outcome.goals);
-        files.push(Written::new(write(file, &path, &answers)?, what));
+        outputs.add(write(file, &path, &answers)?, format!("the tensions for {} goals", outcome.goals));
     }
-    json.finish(&outcome, &outcome.summary(), files)
+    outputs.finish(&outcome, &outcome.summary(), "")
 }
 
 /// Returns the drive that the command line states.
