@@ -286,7 +286,7 @@ def test_what_no_robot_could_do_is_told_as_by_the_command_line(tmp_path):
         ({"disturbances": [3]}, "a disturbance is a dict such as {\"kind\": \"hum\", \"amplitude_n\": 0.1}, or a text"),
         ({"disturbances": [{"kind": "hum", "amplitude_n": "much"}]}, "`amplitude_n` of a disturbance is no number"),
         ({"disturbances": ["hmu"]}, "there is no disturbance `hmu`; did you mean `hum`? known are"),
-        ({"disturbances": ["hum:amplitude_n=0.1"] * 2}, "the disturbance `hum` is hidden twice; give each"),
+        ({"disturbances": ["hum:amplitude_n=0.1"] * 2}, "the disturbance `hum` is hidden twice. Give each"),
         ({"wander_s": 0.0}, "`wander_s` is 0; allowed is 0.001 to"),
         ({"length_resolution_m": -1e-6}, "`length_resolution_m` is -0.000001; allowed is 0 to 1"),
     ],
@@ -298,7 +298,7 @@ def test_options_out_of_range_are_told(robot, options, told):
 
 
 def test_what_cannot_be_read_is_told(tmp_path, robot, log):
-    with pytest.raises(fric.LogError, match="there is no file `.*none.mcap`; check the path"):
+    with pytest.raises(fric.LogError, match="there is no file `.*none.mcap`. Check the path"):
         fric.read_log(tmp_path / "none.mcap")
     with pytest.raises(fric.LogError, match="is not an MCAP recording"):
         fric.read_log(ROBOT)
