@@ -249,10 +249,21 @@ impl Correlations {
         Some((-half..=half).filter_map(shared).collect())
     }
 
-    /// Returns the lag at which least is left, if that is far less than without one.
+    /// Returns the lag at which least is left, if that is far less than without one. A load that repeats itself leaves as little at several, of which the
+    /// shortest is returned.
     fn lag(&self) -> Option<isize> {
         let (_, left_0) = self.left(0)?;
-        let (lag, left) = self.lags()?.into_iter().min_by(|(_, one), (_, other)| one.total_cmp(other))?;
+        let lags = self.lags()?;
+        let (_, least) = lags.iter().copied().min_by(|(_, one), (_, other)| one.total_cmp(other))?;
+        let is_alike = |(lag, left): &(isize, f64)| {
+            self.left(*lag).is_some_and(|(count, _)| self.independent_ratio * count * (left / least).ln() < STRONG)
+        };
+        let is_lowest = |(place, (_, left)): &(usize, &(isize, f64))| {
+            let around = lags.iter().skip(place.saturating_sub(CHANGE_BINS)).take(2 * CHANGE_BINS + 1);
+            around.copied().all(|(_, other)| *left <= other)
+        };
+        let lowest = lags.iter().enumerate().filter(is_lowest).map(|(_, lag)| *lag).filter(is_alike);
+        let (lag, left) = lowest.min_by_key(|(lag, _)| lag.unsigned_abs())?;
         (lag.unsigned_abs() >= LEAST_BINS && left_0 >= LEAST_RATIO * left).then_some(lag)
     }
 
@@ -266,6 +277,8 @@ impl Correlations {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::SeedableRng as _;
@@ -309,6 +322,29 @@ mod tests {
         }
         // Nothing but noise.
         assert_eq!(found(0.004, 5.0, 1e4), None);
+    }
+
+    /// A load that repeats itself every 5.7 s is late by 0.2 s as it would be early by 5.5 s, or late by 5.9 s.
+    #[test]
+    fn of_lags_that_a_repeated_load_leaves_alike_the_shortest_is_told() {
+        for (seed, late_s) in [(1, 0.2), (2, -0.2), (3, 0.0), (4, 0.2), (5, -0.2)] {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };
+            let load_n = |time_s: f64| 12.0 * (TAU * time_s / 5.7).sin() + 6.0 * (TAU * time_s / 1.9).sin();
+            let mut both = Lateness::default();
+            for sample in 0_i32..12_000 {
+                let time_s = 0.01 * f64::from(sample);
+                both.add(
+                    i64::from(sample) * 10_000_000,
+                    [load_n(time_s) + normal(), load_n(time_s - late_s) + normal()],
+                );
+            }
+            assert!(
+                both.seconds().is_none_or(|told_s| (told_s - late_s).abs() < 0.05),
+                "{late_s}: {:?}",
+                both.seconds()
+            );
+        }
     }
 
     #[test]
