@@ -7,6 +7,7 @@ mod drive;
 mod empirical;
 mod faulty;
 mod late;
+mod of_length;
 mod turning;
 mod undetermined;
 mod wrench;

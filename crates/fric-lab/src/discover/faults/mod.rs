@@ -7,9 +7,12 @@
 pub mod correction;
 pub mod length_noise;
 pub mod lines;
+mod of_length;
 pub mod oscillations;
 pub mod passes;
+mod shifted;
 pub mod spectrum;
+mod time_fit;
 pub mod timing;
 pub mod vibration;
 
