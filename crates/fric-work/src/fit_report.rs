@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use fric_lab::discover::words::Times;
 use fric_lab::errors::ForceError;
 use fric_lab::fit::CableFit;
 use fric_lab::fit::result::{FitCableResult, FitResult};
@@ -68,7 +69,7 @@ pub fn fit_report(result: &FitResult, fits: &[CableFit]) -> String {
             }
         }
         for fault in &cable.faults {
-            let _ = writeln!(text, "    recording: {}", fault.in_words());
+            let _ = writeln!(text, "    recording: {}", fault.in_words(&Times::default()));
         }
         for open in &cable.open {
             let parts =

@@ -1,9 +1,8 @@
 //! The result of a discovery for people: the verdicts of all cables, then the findings on each.
 
 use super::Verdict;
-use super::result::{
-    DiscoverCableResult, DiscoverResult, EffectResult, FaultResult, WhereResult, WrenchComponent, WrenchGap,
-};
+use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WhereResult, WrenchComponent, WrenchGap};
+use super::words::Times;
 use crate::fit::summary::log_table;
 use crate::text::{listed, table, wrapped};
 
@@ -48,11 +47,11 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
         text += "\n";
         text += &wrapped("", &format!("{}: {}", listed(&quiet), first.verdict_in_words(is_beside_rest)));
     }
-    let mut told = Vec::new();
+    let (mut told, times) = (Vec::new(), Times::of(result));
     for cable in result.cables.iter().filter(|cable| !is_quiet(cable)) {
         text += "\n";
         text += &wrapped("", &format!("{}: {}", cable.name, cable.verdict_in_words(is_beside_rest)));
-        text += &details(cable, &mut told);
+        text += &details(cable, &times, &mut told);
     }
     text
 }
@@ -93,7 +92,7 @@ fn line(label: &str, text: &str) -> String {
 }
 
 /// Describes the findings on a cable. Cause and remedy of an effect are given once.
-fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String {
+fn details(cable: &DiscoverCableResult, times: &Times<'_>, told: &mut Vec<&'static str>) -> String {
     let mut text = String::new();
     if let Some(gap) = cable.gap_in_words().filter(|_| cable.verdict != Verdict::Complete) {
         text += &line("gap", &gap);
@@ -103,7 +102,7 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
     // Beside a complete model the gap is what fitting its values has closed.
     let has_gap = |place: &&WhereResult| cable.verdict != Verdict::Complete && place.signal != "frequency";
     for (count, place) in cable.places.iter().filter(has_gap).take(MOST_PLACES).enumerate() {
-        text += &line(if count == 0 { "where" } else { "" }, &place.in_words("the gap"));
+        text += &line(if count == 0 { "where" } else { "" }, &place.in_words("the gap", times));
     }
     for effect in &cable.effects {
         text += &of_effect(effect, told.contains(&effect.kind));
@@ -114,12 +113,12 @@ fn details(cable: &DiscoverCableResult, told: &mut Vec<&'static str>) -> String 
     for (count, tried) in cable.tried.iter().take(MOST_TRIED).enumerate() {
         text += &line(if count == 0 { "tried" } else { "" }, &tried.in_words());
     }
-    let of_recording = cable.faults.iter().map(FaultResult::in_words).chain(cable.outliers_in_words());
+    let of_recording = cable.faults.iter().map(|fault| fault.in_words(times)).chain(cable.outliers_in_words());
     for (count, sentence) in of_recording.enumerate() {
         text += &line(if count == 0 { "recording" } else { "" }, &sentence);
     }
     if let Some(rest) = &cable.unexplained {
-        for (count, sentence) in rest.in_words().iter().enumerate() {
+        for (count, sentence) in rest.in_words(times).iter().enumerate() {
             text += &line(if count == 0 { "unexplained" } else { "" }, sentence);
         }
     }

@@ -1,5 +1,6 @@
 //! The page of `replay --report`: errors as tables and over time, friction over its conditions, forces and wrench.
 
+use fric_lab::discover::words::Times;
 use fric_lab::errors::{WrenchError, WrenchResult};
 use fric_lab::text::duration;
 use maud::{Markup, html};
@@ -28,7 +29,7 @@ pub fn page(result: &ReplayResult, series: &Series, provenance: &Provenance) -> 
         p.soft { "rms and mean |error| of the force at the platform against the reference; left: rms after as a share of rms before." }
         @for cable in result.cables.iter().filter(|cable| !cable.faults.is_empty()) {
             h3 { "Faults of the recording of " (cable.name) }
-            ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
+            ul { @for fault in &cable.faults { li { (fault.in_words(&Times::default())) } } }
         }
         @if let Some(wrench) = &result.wrench { (wrench_table(wrench)) }
         p.soft {

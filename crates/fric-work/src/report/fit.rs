@@ -1,5 +1,6 @@
 //! The page of a fit: values with their errors, correlations, and the remaining gap to the reference.
 
+use fric_lab::discover::words::Times;
 use fric_lab::fit::result::{FitCableResult, FitResult, LogValues};
 use fric_lab::text::plain;
 use maud::{Markup, html};
@@ -24,7 +25,7 @@ pub fn page(result: &FitResult, fits: &[fric_lab::fit::CableFit], provenance: &P
                 h2 { (cable.name) }
                 @if !cable.faults.is_empty() {
                     h3 { "Faults of the recording" }
-                    ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
+                    ul { @for fault in &cable.faults { li { (fault.in_words(&Times::default())) } } }
                 }
                 (values(std::slice::from_ref(cable)))
                 (log_values(&cable.per_log))

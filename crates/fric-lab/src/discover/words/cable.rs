@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use fric_core::effects::Effect;
 
-use super::{condition, intervals, newtons, percent};
+use super::{Times, condition, newtons, percent};
 use crate::discover::Verdict;
 use crate::discover::faults::Fault;
 use crate::discover::rest::places::LEAST_CONCENTRATION;
@@ -70,7 +70,7 @@ impl WhereResult {
 
     /// Returns the fraction of the excess in the range, as a sentence without its full stop. `of` names the quantity.
     #[must_use]
-    pub fn in_words(&self, of: &str) -> String {
+    pub fn in_words(&self, of: &str, times: &Times<'_>) -> String {
         // Writing to a String cannot fail.
         let mut text = match self.share_of_excess {
             Some(share) => format!("{} of {of} sits {}", percent(share), self.range_in_words()),
@@ -83,7 +83,7 @@ impl WhereResult {
             text += ", which may be chance";
         }
         if !self.intervals_s.is_empty() {
-            let _ = write!(text, "; look at {}", intervals(&self.intervals_s));
+            let _ = write!(text, "; look at {}", times.in_words(&self.intervals_s));
         }
         text
     }
@@ -247,15 +247,15 @@ impl DiscoverCableResult {
 impl UnexplainedResult {
     /// Returns where the rest is concentrated, as sentences without their full stops.
     #[must_use]
-    pub fn in_words(&self) -> Vec<String> {
+    pub fn in_words(&self, times: &Times<'_>) -> Vec<String> {
         let mut sentences = Vec::new();
-        sentences.extend(self.places.iter().take(2).map(|place| place.in_words("the rest")));
+        sentences.extend(self.places.iter().take(2).map(|place| place.in_words("the rest", times)));
         let neighbours: Vec<String> = self.goes_with.iter().filter(|signal| signal.contains(' ')).cloned().collect();
         if !neighbours.is_empty() {
             sentences.push(format!("it goes with signals of other cables: {}", listed(&neighbours)));
         }
         if !self.intervals_s.is_empty() {
-            sentences.push(format!("it is loud at {}", intervals(&self.intervals_s)));
+            sentences.push(format!("it is loud at {}", times.in_words(&self.intervals_s)));
         }
         if sentences.is_empty() {
             sentences.push("it is spread over the whole log and goes with no condition".to_owned());

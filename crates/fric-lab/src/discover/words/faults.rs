@@ -1,25 +1,25 @@
 //! Faults of the recording in words, each with what to do about it.
 
-use super::{intervals, newtons};
+use super::{Times, newtons};
 use crate::discover::faults::Fault;
 use crate::discover::result::FaultResult;
 use crate::text::{quantity, significant, wrapped};
 
-/// Describes the recording faults of each cable, one paragraph per fault; empty if there are none.
+/// Describes the recording faults of each cable that last throughout the logs, one paragraph per fault; empty if there are none.
 pub fn recording_lines<'a>(cables: impl Iterator<Item = (&'a str, &'a [FaultResult])>) -> String {
     let told = cables.flat_map(|(name, faults)| {
-        faults.iter().map(move |fault| wrapped(&format!("{name}, recording: "), &fault.in_words()))
+        faults.iter().map(move |fault| wrapped(&format!("{name}, recording: "), &fault.in_words(&Times::default())))
     });
     let text: String = told.collect();
     if text.is_empty() { text } else { format!("\n{text}") }
 }
 
 impl FaultResult {
-    /// Returns the fault and what to do, as a sentence without its full stop.
+    /// Returns the fault and what to do, as a sentence without its full stop. `times` are those of the result.
     #[must_use]
-    pub fn in_words(&self) -> String {
+    pub fn in_words(&self, times: &Times<'_>) -> String {
         let value = |key: &str| self.parameters.get(key).unwrap_or(f64::NAN);
-        let left_out = || format!("at {}: left out of all the rest", intervals(&self.intervals_s));
+        let left_out = || format!("at {}: left out of all the rest", times.in_words(&self.intervals_s));
         match self.fault {
             Fault::Hum => format!(
                 "it hums at {:.2} Hz with an amplitude of {}: no friction does; look at wiring and amplifiers",

@@ -4,11 +4,13 @@
 mod cable;
 mod effects;
 mod faults;
+mod times;
 mod wrench;
 
 use crate::text::number;
 
 pub use faults::recording_lines;
+pub use times::{Stretch, Times};
 pub use wrench::FROM_OUTSIDE;
 
 /// Unit suffixes of keys, the longer ones first.
@@ -71,20 +73,6 @@ pub fn interval([from_s, to_s]: &[f64; 2]) -> String {
     let digits = if to_s - from_s < 0.2 { 2 } else { 1 };
     let (from, to) = (format!("{from_s:.digits$}"), format!("{to_s:.digits$}"));
     if from == to { from } else { format!("{from}…{to}") }
-}
-
-/// Maximum number of intervals to list.
-const MOST_INTERVALS: usize = 12;
-
-/// Formats time intervals.
-#[must_use]
-pub fn intervals(intervals_s: &[[f64; 2]]) -> String {
-    let shown: Vec<String> = intervals_s.iter().take(MOST_INTERVALS).map(interval).collect();
-    let shown = shown.join(", ");
-    match intervals_s.len().saturating_sub(MOST_INTERVALS) {
-        0 => format!("{shown} s"),
-        more => format!("{shown} s and {more} more"),
-    }
 }
 
 /// Returns a condition's name in words.

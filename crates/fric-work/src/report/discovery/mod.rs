@@ -6,7 +6,7 @@ mod plots;
 use fric_lab::discover::result::{
     Candidate, DiscoverCableResult, DiscoverResult, EffectResult, WhereResult, WrenchGap,
 };
-use fric_lab::discover::words::{condition, evidence, interval, name_of, percent, significance};
+use fric_lab::discover::words::{Stretch, Times, condition, evidence, interval, name_of, percent, significance};
 use fric_lab::discover::{CableDiscovery, Model, Verdict};
 use fric_lab::fit::{HALF_INTERVAL, Parameter};
 use fric_lab::text::quantity;
@@ -24,7 +24,7 @@ use crate::verdict;
 #[must_use]
 pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance: &Provenance) -> String {
     let mut plots = Plots::default();
-    let common = Common::of(discoveries);
+    let (common, times) = (Common::of(discoveries), Times::of(result));
     let content = html! {
         @if result.cables.len() > 1 {
             nav {
@@ -42,7 +42,7 @@ pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance:
             section.cable id=(format!("cable-{place}")) data-cable=(place) {
                 h2 { (cable.name) ": " span class={ "verdict " (cable.verdict.name()) } { (cable.verdict.name()) } }
                 p { (cable.verdict_in_words(result.wrench.as_ref().is_some_and(|gap| gap.is_of_no_cable))) }
-                @if cable.noise_floor_n.is_some() { (details(&mut plots, &common, cable, found)) }
+                @if cable.noise_floor_n.is_some() { (details(&mut plots, &common, &times, cable, found)) }
             }
         }
     };
@@ -143,21 +143,27 @@ fn of_wrench(gap: &WrenchGap) -> Markup {
     }
 }
 
-fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, found: &CableDiscovery) -> Markup {
+fn details(
+    plots: &mut Plots,
+    common: &Common,
+    times: &Times<'_>,
+    cable: &DiscoverCableResult,
+    found: &CableDiscovery,
+) -> Markup {
     // The plot that a time interval links to.
     let over_time_id = plots.next_id();
     html! {
         @for effect in &cable.effects { (effect_in_words(effect)) }
         @if !cable.faults.is_empty() {
             h3 { "Faults of the recording" }
-            ul { @for fault in &cable.faults { li { (fault.in_words()) } } }
+            ul { @for fault in &cable.faults { li { (fault.in_words(times)) } } }
         }
         @if let Some(bound) = cable.bound_in_words() { p.soft { (bound) "." } }
         @if let Some(values) = cable.undetermined_in_words() { p.soft { (values) "." } }
         @if let Some(outliers) = cable.outliers_in_words() { p.soft { (outliers) "." } }
         @if let Some(rest) = &cable.unexplained {
             h3 { "Unexplained" }
-            ul { @for sentence in rest.in_words() { li { (sentence) } } }
+            ul { @for sentence in rest.in_words(times) { li { (sentence) } } }
         }
         @if cable.verdict != Verdict::Complete && cable.before.is_some() {
             figure {
@@ -170,10 +176,10 @@ fn details(plots: &mut Plots, common: &Common, cable: &DiscoverCableResult, foun
         (curves(plots, cable, found))
         (periodic(plots, cable, found))
         @for profile in &found.profiles { (over_condition(cable, profile)) }
-        (places("Where the given model disagrees", &cable.places, &over_time_id))
+        (places("Where the given model disagrees", &cable.places, times, &over_time_id))
         // Without an effect the rest equals the whole gap.
         @if let Some(rest) = cable.unexplained.as_ref().filter(|_| !cable.effects.is_empty() || cable.places.is_empty()) {
-            (places("Where the rest lies", &rest.places, &over_time_id))
+            (places("Where the rest lies", &rest.places, times, &over_time_id))
         }
         (candidates(cable))
         (parameters(found))
@@ -200,7 +206,7 @@ fn effect_in_words(effect: &EffectResult) -> Markup {
     }
 }
 
-fn places(title: &str, places: &[WhereResult], plot: &str) -> Markup {
+fn places(title: &str, places: &[WhereResult], times: &Times<'_>, plot: &str) -> Markup {
     let share = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), percent);
     html! {
         @if !places.is_empty() {
@@ -218,7 +224,7 @@ fn places(title: &str, places: &[WhereResult], plot: &str) -> Markup {
                         td { (share(place.explains)) }
                         td { (place.significance.map_or_else(|| "–".to_owned(), significance)) }
                         td.words {
-                            @if place.intervals_s.is_empty() { "–" } @else { (looks(&place.intervals_s, plot)) }
+                            @if place.intervals_s.is_empty() { "–" } @else { (looks(&place.intervals_s, times, plot)) }
                         }
                     }
                 }
@@ -232,13 +238,15 @@ fn places(title: &str, places: &[WhereResult], plot: &str) -> Markup {
 }
 
 /// Returns links from time intervals to a plot.
-fn looks(intervals_s: &[[f64; 2]], plot: &str) -> Markup {
+fn looks(intervals_s: &[[f64; 2]], times: &Times<'_>, plot: &str) -> Markup {
+    let stretches = || intervals_s.iter().flat_map(|interval_s| times.stretches(interval_s));
     html! {
-        @for (place, one) in intervals_s.iter().enumerate() {
+        @for (place, Stretch { log, own_s, joined_s: [from_s, to_s] }) in stretches().enumerate() {
             @if place > 0 { ", " }
-            a href=(format!("#{plot}")) data-look=(format!("{} {}", one[0], one[1])) { (interval(one)) }
+            a href=(format!("#{plot}")) data-look=(format!("{from_s} {to_s}")) { (interval(&own_s)) }
+            @if let Some(name) = log { " s of " (name) }
         }
-        " s"
+        @if stretches().all(|stretch| stretch.log.is_none()) { " s" }
     }
 }
 
