@@ -50,7 +50,7 @@ def told(cable):
     for name in ("time_s", "residual_before_n", "residual_after_n", "where_in_words"):
         del attributes[name]
     # These keys are absent where the logs share all values, and where nothing is at the end of its range or undetermined.
-    for name in ("per_log", "at_bound", "undetermined"):
+    for name in ("per_log", "at_bound", "undetermined", "revised"):
         if not attributes[name]:
             del attributes[name]
     for name in ("before", "after"):

@@ -98,6 +98,15 @@ class Effect(TypedDict):
     table: Table | None
 
 
+class Revised(TypedDict):
+    """Parameter of an effect of the robot file that the log has otherwise."""
+
+    parameter: str
+    given: float
+    value: float
+    standard_error: float
+
+
 Unexplained = TypedDict(
     "Unexplained",
     {
@@ -227,6 +236,8 @@ class CableDiscovery(Value):
     """Friction parameters at the greatest value of their range, which the samples would exceed."""
     undetermined: list[str]
     """Parameters whose given value the log contradicts without determining a better one: `parameters` has one of many that agree with the log."""
+    revised: list[Revised]
+    """Parameters of the robot file's effects whose fitted value differs from the given one by more than its 95 % interval."""
     per_log: list[LogValues]
     """What each log has of its own (`discover(..., per_log=[...])`), in the order of the logs; empty if they share all values. `parameters` has that of
     the last log."""
@@ -291,6 +302,7 @@ class DiscoverResult(Result):
                 after=ForceError._of(cable.pop("after", None)),
                 at_bound=cable.pop("at_bound", []),
                 undetermined=cable.pop("undetermined", []),
+                revised=cable.pop("revised", []),
                 per_log=cable.pop("per_log", []),
                 where_in_words=words,
                 time_s=time_s,

@@ -39,6 +39,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
             && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
             && cable.tried.is_empty()
             && cable.faults.is_empty()
+            && cable.revised.is_empty()
             && cable.left_out.outliers == 0
             && !cable.is_constant()
     };
@@ -110,6 +111,9 @@ fn details(cable: &DiscoverCableResult, times: &Times<'_>, told: &mut Vec<&'stat
     }
     text += &cable.bound_in_words().map_or_else(String::new, |bound| line("bound", &bound));
     text += &cable.undetermined_in_words().map_or_else(String::new, |values| line("open", &values));
+    for (count, sentence) in cable.revised_in_words().iter().enumerate() {
+        text += &line(if count == 0 { "revised" } else { "" }, sentence);
+    }
     for (count, tried) in cable.tried.iter().take(MOST_TRIED).enumerate() {
         text += &line(if count == 0 { "tried" } else { "" }, &tried.in_words());
     }

@@ -96,6 +96,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> T
         standard_errors: Absent,
         at_bound: Vec::new(),
         undetermined: Vec::new(),
+        revised: Vec::new(),
         faults: Absent,
         unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),
     };

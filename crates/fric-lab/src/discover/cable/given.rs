@@ -4,23 +4,26 @@ use std::sync::atomic::AtomicBool;
 
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 
+use crate::certainty::undetermined::vagueness;
 use crate::discover::faults::{RecordingFault, faulty_stretches, leave_out};
 use crate::discover::readiness::lack_of;
 use crate::discover::report::{CableDiscovery, Model};
-use crate::discover::workbench::{self, Workbench};
+use crate::discover::workbench::{self, Trial, Workbench};
 use crate::fit::cables::{Search, prepared, used};
 use crate::fit::{CableRecord, FitOptions, Parameter, Row};
 use crate::replay::Deviation;
 use crate::samples::held::repeated_forces;
 use crate::samples::split::split;
 use crate::search::gang::{Gang, Seat};
+use crate::search::solve::{Solution, Unknown};
 
 /// Returns which samples count, and the given model with start values from the data.
 pub fn given_to(record: &CableRecord<'_>, stop: &AtomicBool) -> Option<(Vec<bool>, workbench::Model)> {
     let gang = Gang::new(1, stop);
     let paper = fitted_to(record, gang.seat(0), stop)?;
-    let (start, _) = given_model(record, &paper.solution);
-    Some((used(&paper.standings), start))
+    let counts = used(&paper.standings);
+    let (start, _) = given_model(record, &paper.solution, &counts, stop);
+    Some((counts, start))
 }
 
 /// Fits the given model to all samples that count. Returns `None` where the log cannot tell.
@@ -66,23 +69,54 @@ pub(super) fn judged(residual_n: &[f64], held_out: &[bool]) -> Deviation {
 /// Returns the given model with start values from the data, and the parameters that the log does not determine, which stay as given.
 ///
 /// Free are the friction that acts, an offset if the file has one (the offset of a sensor that was not tared is to be found, not to be fitted away),
-/// and the parameters of the file's effects.
+/// and the parameters of the file's effects. The fit that gives the start values has an offset free. Beside it the log may not determine a parameter of an
+/// effect, as a gain under one load, that it determines without: the file has no offset, so that this parameter is fitted like the others.
 pub(super) fn given_model(
     record: &CableRecord<'_>,
-    paper: &crate::search::solve::Solution,
+    paper: &Solution,
+    counts: &[bool],
+    stop: &AtomicBool,
 ) -> (workbench::Model, Vec<Parameter>) {
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
     let all = FitOptions::default().shared(record);
+    let has_other_zero = all.iter().any(|parameter| parameter.place() == OFFSET && !acts(parameter, &given));
     let acting = all.into_iter().filter(|parameter| acts(parameter, &given));
-    let (held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
+    let (mut held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
     let mut values = given;
     if let Some(found) = paper.values.first() {
         for parameter in &free {
             values[parameter.place()] = found[parameter.place()];
         }
     }
-    (workbench::Model { values, free }, held)
+    let mut model = workbench::Model { values, free };
+    let of_effects: Vec<Parameter> = held.iter().copied().filter(|parameter| !parameter.is_friction()).collect();
+    if has_other_zero && !of_effects.is_empty() {
+        let blocks = split(record);
+        let bench = Workbench { record: *record, blocks: &blocks, counts, measured: &[], stop };
+        let (trial, told) = determined_beside(&bench, &model, &of_effects);
+        held.retain(|parameter| !told.contains(parameter));
+        model.free.extend(told);
+        for parameter in &model.free {
+            model.values[parameter.place()] = trial.values[parameter.place()];
+        }
+    }
+    (model, held)
+}
+
+/// Fits a model with further parameters free. Returns those that the training samples determine then.
+pub(super) fn determined_beside(
+    bench: &Workbench<'_>,
+    model: &workbench::Model,
+    held: &[Parameter],
+) -> (Trial, Vec<Parameter>) {
+    let mut with_all = model.clone();
+    with_all.free.extend(held);
+    let trial = bench.try_one(&with_all);
+    let (_, all) = vagueness(&bench.problem(&trial.free, None), &[trial.values]);
+    let is_told = |(vagueness, of): &(f64, Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
+    let told = all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect();
+    (trial, told)
 }
 
 /// Whether a friction parameter acts in a model.

@@ -67,7 +67,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
         conditions.iter().filter(|condition| !["sensor_force", "force_rate"].contains(&condition.signal));
     let of_run = [load(record), time(record)].into_iter().chain(log(record));
     let steady: Vec<Condition<'_>> = without_residual.cloned().chain(of_run).collect();
-    let (mut start, held) = given_model(record, &solution);
+    let (mut start, held) = given_model(record, &solution, &counts, stop);
 
     let measured = crate::samples::interpolated::measured(record);
     let times = Times::of(record);

@@ -4,7 +4,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DMatrix;
 
-use super::given::acts;
+use super::given::{acts, determined_beside};
 use super::{BELIEVED_RATIO, CableLog};
 use crate::candidates::catalogue as candidates;
 use crate::certainty::assumed;
@@ -280,15 +280,7 @@ impl CableLog<'_> {
             return Vec::new();
         }
         let bench = self.bench(counts);
-        let told_by = |named: &Trial| -> Vec<Parameter> {
-            let mut with_all = named.model();
-            with_all.free.extend(held);
-            let trial = bench.try_one(&with_all);
-            let (_, all) =
-                crate::certainty::undetermined::vagueness(&bench.problem(&trial.free, None), &[trial.values]);
-            let is_told = |(vagueness, of): &(f64, Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);
-            all.into_iter().filter(is_told).map(|(_, of)| of.parameter).collect()
-        };
+        let told_by = |named: &Trial| determined_beside(&bench, &named.model(), held).1;
         let told: Vec<Parameter> = naming.ladder.iter().skip(1).flat_map(told_by).collect();
         held.iter().copied().filter(|held| told.contains(held)).collect()
     }

@@ -8,6 +8,7 @@ use super::fault::FaultResult;
 use super::finite;
 use super::machine::{Machine, Robot, is_absent};
 use super::place::{UnexplainedResult, WhereResult, unexplained};
+use super::revised::{RevisedResult, revised};
 use crate::discover::extended::contradicted;
 use crate::discover::report::{CableDiscovery, Model, Verdict};
 use crate::discover::rest::empirical;
@@ -86,6 +87,9 @@ pub struct DiscoverCableResult<M: Machine = Robot> {
     /// if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub undetermined: Vec<String>,
+    /// Parameters of the robot file's effects that the log has otherwise, by more than their intervals; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub revised: Vec<RevisedResult>,
     /// What each log has of its own, in the order of the logs; absent if they share all parameters. `parameters` has the value of the last log.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub per_log: Vec<LogValues>,
@@ -135,6 +139,7 @@ pub fn cable_result(
 ) -> DiscoverCableResult {
     let samples = found.samples;
     let (before, after) = (ForceError::of(&found.before.held_out_n), ForceError::of(&found.after.held_out_n));
+    let contradicted = contradicted(found, given);
     let share = |rms_n: f64| gap_closed(found, rms_n);
     let told = found.lack.as_ref().map(|lack| (lack.cause.clone(), lack.advice));
     let missing = told.map(|told| lack.unwrap_or(told)).map(|(cause, advice)| Missing { cause, advice });
@@ -168,10 +173,11 @@ pub fn cable_result(
         candidates: found.candidates.iter().map(Candidate::of).collect(),
         tried: found.tried.iter().map(TriedResult::of).collect(),
         kept: None,
-        parameters: parameters(found),
+        parameters: parameters(found, &contradicted),
         standard_errors: errors(found, Parameter::all(), ToString::to_string),
         at_bound: at_bound(&found.after),
-        undetermined: contradicted(found, given).iter().map(ToString::to_string).collect(),
+        undetermined: contradicted.iter().map(ToString::to_string).collect(),
+        revised: revised(found, given),
         per_log: LogValues::of_logs(&found.per_log, logs),
         faults: found.faults.iter().map(FaultResult::of).collect(),
         unexplained: found.unexplained.as_ref().map(|rest| unexplained(rest, names)),
@@ -202,8 +208,9 @@ fn at_bound(model: &Model) -> Vec<String> {
     model.fitted.iter().filter(rubs).filter(is_at_bound).map(ToString::to_string).collect()
 }
 
-/// Returns the values of the extended model: friction, fitted parameters, and all parameters of each effect found.
-fn parameters(found: &CableDiscovery) -> Numbers {
+/// Returns the values of the extended model: friction, fitted parameters, those that the log has otherwise than the file, and all parameters of each effect
+/// found.
+fn parameters(found: &CableDiscovery, contradicted: &[Parameter]) -> Numbers {
     let model = &found.after;
     let of_finding = |parameter: &Parameter| {
         found.findings.iter().any(|finding| finding.effect.places().contains(&parameter.place()))
@@ -212,7 +219,8 @@ fn parameters(found: &CableDiscovery) -> Numbers {
         let value = model.values[parameter.place()];
         let of_finding = of_finding(&parameter) && !empirical::is_idle(&parameter, &model.values);
         let is_per_log = found.per_log.iter().flatten().any(|log| log.parameter == parameter);
-        let relevant = parameter.is_friction() || is_per_log || model.fitted.contains(&parameter) || of_finding;
+        let is_changed = model.fitted.contains(&parameter) || contradicted.contains(&parameter);
+        let relevant = parameter.is_friction() || is_per_log || is_changed || of_finding;
         (relevant && value < NO_PRESLIDING_N_PER_M).then(|| (parameter.to_string(), value))
     };
     Numbers(Parameter::all().filter_map(shown).collect())

@@ -10,6 +10,7 @@ mod effect;
 mod fault;
 mod machine;
 mod place;
+mod revised;
 mod table;
 mod wrench;
 
@@ -31,6 +32,7 @@ pub use effect::{Candidate, EffectResult, Evidence, RunnerUpResult, TriedResult}
 pub use fault::FaultResult;
 pub use machine::{Absent, Machine, Robot, Value};
 pub use place::{UnexplainedResult, WhereResult};
+pub use revised::RevisedResult;
 pub use table::{TablePoint, TableResult};
 pub use wrench::{GeometryResult, TriedTogether, WrenchComponent, WrenchGap};
 

@@ -8,7 +8,8 @@ use super::{Times, condition, newtons, percent};
 use crate::discover::Verdict;
 use crate::discover::faults::Fault;
 use crate::discover::rest::places::LEAST_CONCENTRATION;
-use crate::discover::result::{DiscoverCableResult, EffectResult, UnexplainedResult, WhereResult};
+use crate::discover::result::{DiscoverCableResult, EffectResult, RevisedResult, UnexplainedResult, WhereResult};
+use crate::fit::HALF_INTERVAL;
 use crate::text::{listed, quantity, significant};
 
 /// The lower end of a range counts as zero below this fraction of the upper end.
@@ -132,6 +133,17 @@ impl DiscoverCableResult {
         Some(format!(
             "the log contradicts the given value but does not determine a better one; {values} is one of many that agree"
         ))
+    }
+
+    /// Returns which parameters of the file's effects the log has otherwise, as sentences without their full stops.
+    #[must_use]
+    pub fn revised_in_words(&self) -> Vec<String> {
+        let sentence = |revised: &RevisedResult| {
+            let value = quantity(revised.value, Some(HALF_INTERVAL * revised.standard_error), revised.unit);
+            let given = quantity(revised.given, None, revised.unit);
+            format!("{} of the file is {given}; the log has {value} (95 %)", revised.parameter)
+        };
+        self.revised.iter().map(sentence).collect()
     }
 
     fn values_of(&self, names: &[String]) -> Option<String> {

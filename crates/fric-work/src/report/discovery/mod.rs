@@ -160,6 +160,7 @@ fn details(
         }
         @if let Some(bound) = cable.bound_in_words() { p.soft { (bound) "." } }
         @if let Some(values) = cable.undetermined_in_words() { p.soft { (values) "." } }
+        @for revised in cable.revised_in_words() { p.soft { (revised) "." } }
         @if let Some(outliers) = cable.outliers_in_words() { p.soft { (outliers) "." } }
         @if let Some(rest) = &cable.unexplained {
             h3 { "Unexplained" }
