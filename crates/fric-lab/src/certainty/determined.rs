@@ -15,7 +15,7 @@ use crate::search::vector::Parameter;
 /// Half the width of a 95 % interval, in standard errors.
 pub const HALF_INTERVAL: f64 = 1.96;
 /// Half width of an interval that does not matter: μ, dimensionless.
-const NEGLIGIBLE_MU: f64 = 0.0025;
+pub const NEGLIGIBLE_MU: f64 = 0.0025;
 /// Half width for ε, as a fraction of the cable's friction.
 const NEGLIGIBLE_OFFSET_RATIO: f64 = 0.01;
 /// Half width for F_pv of all pulleys at 1 m/s, as a fraction of the cable's friction.

@@ -12,6 +12,7 @@ use super::report::{CableFit, ForceErrors, LogValue, OpenCombination};
 use super::{FitOptions, Progress, start};
 use crate::candidates::newcomers::with_newcomers;
 use crate::certainty::log_zeros::{LogZeroEstimate, log_zeros};
+use crate::certainty::one_way;
 use crate::replay::Deviation;
 use crate::samples::cable::{CableRecord, Zeroed};
 use crate::samples::interpolated::measured;
@@ -167,10 +168,11 @@ impl<'a> Search<'a> {
             (solution, standings) = solve_without_warm_up(vec![solution.values]);
             solution.evaluation_count += evaluation_count;
         }
-        if options.is_zero_confused(record) && !solution.unknowns.is_empty() {
-            solution.undetermined.extend(
-                Parameter::all().filter(|of| of.place() == OFFSET).map(|parameter| Unknown { member: 0, parameter }),
-            );
+        if let Some(parameter) = options.open_zero(record).filter(|_| !solution.unknowns.is_empty()) {
+            solution.undetermined.push(Unknown { member: 0, parameter });
+            let has_friction = solution.unknowns.iter().any(|unknown| unknown.parameter.place() == MU);
+            let found = solution.values.first().filter(|_| has_friction);
+            solution.open.extend(found.and_then(|values| one_way::combination(&problem, parameter, values, &given)));
         }
         Self { problem, start, solution, standings }
     }

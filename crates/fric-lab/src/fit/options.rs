@@ -5,6 +5,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::OFFSET;
 
 use crate::candidates::catalogue::is_fitted_once_it_acts;
+use crate::certainty::one_way::is_zero_open;
 use crate::samples::cable::CableRecord;
 use crate::samples::record::LogZero;
 use crate::search::solve::Weighing;
@@ -21,7 +22,7 @@ pub struct FitOptions {
 
 impl FitOptions {
     /// Returns the free parameters of a cable that all its logs share: not the zero that each log has of its own, nor by default the other zero, whose
-    /// effect on the force is nearly the same. By default a cable that moves one way only under a known load has no zero free either.
+    /// effect on the force is nearly the same. By default a cable whose zero is one with its friction has none free either.
     pub(crate) fn shared(&self, record: &CableRecord<'_>) -> Vec<Parameter> {
         let mut free = self.free(record.params);
         if let Some(per_log) = record.per_log {
@@ -31,16 +32,19 @@ impl FitOptions {
             };
             free.retain(|parameter| !is_zero(parameter));
         }
-        if self.is_zero_confused(record) {
-            free.retain(|parameter| parameter.place() != OFFSET);
+        if let Some(zero) = self.open_zero(record) {
+            free.retain(|parameter| *parameter != zero);
         }
         free
     }
 
-    /// Whether nothing tells the zero at the platform from friction. A search would not notice: under a known load, which has no noise, friction as large as
-    /// the force beside a zero as large agrees with any log.
-    pub(crate) fn is_zero_confused(&self, record: &CableRecord<'_>) -> bool {
-        self.parameters.is_none() && record.reference_is_known && record.is_one_way()
+    /// Returns the zero that stays as given because nothing tells it from friction; `None` if there is none, or if it was asked for.
+    pub(crate) fn open_zero(&self, record: &CableRecord<'_>) -> Option<Parameter> {
+        if self.parameters.is_some() || record.per_log.is_some() || !is_zero_open(record) {
+            return None;
+        }
+        let is_zero = |parameter: &Parameter| LogZero::ALL.iter().any(|zero| parameter.place() == zero.place());
+        self.free(record.params).into_iter().find(is_zero)
     }
 
     /// Returns the free parameters of a cable.

@@ -39,7 +39,8 @@ pub struct OpenPart {
     pub cable: usize,
     /// The parameter.
     pub parameter: Parameter,
-    /// Its part of a step of 1.96 standard errors, in its unit; not finite for a parameter that has no effect at all.
+    /// Its part of a step of 1.96 standard errors, in its unit; not finite for a parameter that has no effect at all. Of a zero that motion one way leaves
+    /// open, of a step as large as takes all friction for a zero.
     pub step: f64,
 }
 

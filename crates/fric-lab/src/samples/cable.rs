@@ -13,8 +13,6 @@ use super::record::{LogZero, PerLog, Row};
 /// Half width of the play that suppresses noise of the length best, as a multiple of the noise's standard deviation. On a log with noise of 3 µm, the
 /// rms is 1.42 of its noise with 1σ, 1.03 with 2σ, 1.09 with 3σ, 1.21 with 4σ, and 3.7 without play.
 pub const PLAY_OF_NOISE: f64 = 2.0;
-/// A cable that goes back for less than this fraction of its way goes one way. With half or double, nothing changes but for logs that hardly go back.
-const ONE_WAY_RATIO: f64 = 0.02;
 
 /// Cycles and references of a cable with zeros changed in the data; what is as it was is shared.
 #[derive(Debug)]
@@ -164,19 +162,6 @@ impl<'a> CableRecord<'a> {
             rows.iter().map(|row| row.signals.length_m).chain([f64::NAN]).collect::<Vec<f64>>()
         };
         lasting_white_noise(&self.logs().flat_map(of_log).collect::<Vec<f64>>(), PLAY_OF_NOISE)
-    }
-
-    /// Whether the cable moves one way only, so that friction cannot be told from a zero by a load that stays.
-    pub(crate) fn is_one_way(&self) -> bool {
-        let ways_m = self.rows.iter().map(|row| row.signals.displacement_m);
-        let [out_m, back_m] =
-            ways_m.fold(
-                [0.0, 0.0],
-                |[out_m, back_m], way_m| {
-                    if way_m > 0.0 { [out_m + way_m, back_m] } else { [out_m, back_m - way_m] }
-                },
-            );
-        out_m.min(back_m) < ONE_WAY_RATIO * (out_m + back_m)
     }
 
     /// Returns the record with cycles that were conditioned with this play.
