@@ -58,6 +58,16 @@ impl Knowledge {
         place.is_some_and(|place| off.abs() < HALF_INTERVAL * self.covariance[(place, place)].sqrt())
     }
 
+    /// Returns by how much the sum of squares rises from a minimum to the end of the interval of a parameter, with the others free; 0 if it has none.
+    fn rise(&self, unknown: &Unknown) -> f64 {
+        let place = self.unknowns.iter().position(|other| other == unknown);
+        let inverse = self.normal.as_ref().and_then(inverse_of_normal);
+        let rise = place
+            .zip(inverse)
+            .map(|(place, inverse)| HALF_INTERVAL.powi(2) * self.covariance[(place, place)] / inverse[(place, place)]);
+        rise.filter(|rise| rise.is_finite()).unwrap_or(0.0)
+    }
+
     /// Returns the open directions. Each parameter is scaled so that its own interval is as wide as its vagueness.
     fn directions(&self) -> Vec<OpenDirection> {
         let count = self.unknowns.len();
@@ -147,8 +157,9 @@ impl Solution {
     }
 
     /// Holds the undetermined parameters one after the other. A parameter whose given value contradicts the samples keeps its estimate, because the
-    /// samples know that much; one that the search drove along the open direction to a bound, with the given value within its interval, only if the
-    /// contradiction is gross.
+    /// samples know that much. So does friction at its bound, which is none, if friction within its interval contradicts the samples: the interval is as wide as
+    /// that because the model misses something, and no friction is the best that it can do, whatever was given. The end of an effect's range is no such value:
+    /// the given one takes its place if it is within the interval, unless the contradiction is gross.
     pub(crate) fn hold_undetermined(&mut self, problem: &mut Problem<'_>, given: &[Values], cycle_s: f64) {
         let mut kept = Vec::new();
         let mut least = None;
@@ -163,18 +174,23 @@ impl Solution {
                 value(given) - value(&self.values)
             };
             // Where σ ends it has no slope, and an interval that says nothing.
-            let has_slope = |held: &Unknown| held.parameter.place() != SIGMA;
-            let stays_open =
-                |held: &Unknown| has_slope(held) && self.at_bound.contains(held) && knowledge.reaches(held, off(held));
-            let stays_open = next.as_ref().is_some_and(|(held, _)| stays_open(held));
+            let is_ended = |held: &Unknown| held.parameter.place() != SIGMA && self.at_bound.contains(held);
+            let ended = next.as_ref().map(|(held, _)| held).filter(|held| is_ended(held));
+            let has_friction = ended.is_some_and(|held| held.parameter.is_friction());
+            let rise = ended.filter(|_| has_friction).map_or(0.0, |held| knowledge.rise(held));
+            let stays_open = ended.is_some_and(|held| !has_friction && knowledge.reaches(held, off(held)));
             (self.covariance, self.unknowns) = (knowledge.covariance, knowledge.unknowns);
             let Some((held, combination)) = next else { return };
-            let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
             // The bound refers to the values before the first parameter was held, because many small steps add up.
             let least = *least.get_or_insert_with(|| squares(problem, &self.values));
-            let bound = least * if stays_open { GROSS_CONTRADICTION } else { 1.0 + CONTRADICTION_RATIO };
+            if rise > CONTRADICTION_RATIO * least {
+                kept.push(held);
+                continue;
+            }
+            let (members, found, termination) = (problem.members.clone(), self.values.clone(), self.termination);
             hold(problem, held, &mut self.values, given);
             self.search_on(problem, cycle_s);
+            let bound = least * if stays_open { GROSS_CONTRADICTION } else { 1.0 + CONTRADICTION_RATIO };
             if squares(problem, &self.values) > bound {
                 (problem.members, self.values, self.termination) = (members, found, termination);
                 kept.push(held);
