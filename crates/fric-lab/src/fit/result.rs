@@ -128,6 +128,9 @@ pub struct FitCableResult {
     /// Error with these values.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<ForceError>,
+    /// Whether sensor and reference change alike, so that a level between them is a zero and no scale.
+    #[serde(skip)]
+    pub is_scale_told: bool,
     /// Mean of the reference, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_reference_n: Option<f64>,
@@ -187,7 +190,7 @@ pub struct OpenPartResult {
     pub cable: String,
     /// Its name.
     pub parameter: String,
-    /// Its part of a step of 1.96 standard errors, in its unit.
+    /// Its part of a step of 1.96 standard errors, in its unit; of a zero that motion one way leaves open, of a step as large as takes all friction for a zero.
     pub step: f64,
 }
 
@@ -413,6 +416,7 @@ fn cable_result(name: &str, fit: &CableFit, names: &[&str], logs: &[String]) -> 
         at_bound: fit.at_bound.iter().map(ToString::to_string).collect(),
         before: ForceError::of(&fit.errors.before_n),
         after: ForceError::of(&fit.errors.after_n),
+        is_scale_told: fit.errors.set_up.is_scale_told(),
         mean_reference_n: fit.errors.reference_n.mean_magnitude(),
         faults: Vec::new(),
     }

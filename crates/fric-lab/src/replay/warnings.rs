@@ -43,7 +43,9 @@ impl Replay {
         let late_s = self.lateness.iter().map(Lateness::seconds);
         warnings.extend(lateness::warnings(robot.cable_names().into_iter().zip(late_s)));
         let set_ups = self.cables().iter().map(|cable| cable.set_up);
-        warnings.extend(set_up::warnings(robot.cable_names().into_iter().zip(set_ups)));
+        let set_ups = robot.cable_names().into_iter().zip(set_ups);
+        warnings.extend(set_up::warnings(set_ups.clone()));
+        warnings.extend(set_up::zero_warning(set_ups));
         warnings
     }
 

@@ -123,10 +123,11 @@ impl Direction {
         }
     }
 
-    /// Adds a sample: its length, its reference and the force at the platform by the sensor without friction.
-    pub fn add(&mut self, length_m: f64, reference_n: f64, shown_n: f64) {
+    /// Adds a sample: its length, its reference and the force at the platform by the sensor without friction. Returns the sign of the motion, 0 before the
+    /// first and without a length.
+    pub fn add(&mut self, length_m: f64, reference_n: f64, shown_n: f64) -> f64 {
         if !(length_m.is_finite() && reference_n.is_finite() && shown_n.is_finite()) {
-            return;
+            return 0.0;
         }
         let way = self.way.get_or_insert(Way::new(length_m));
         let (onward_m, ended_m) = way.go_to(length_m);
@@ -137,6 +138,7 @@ impl Direction {
         for (sum, value) in self.stroke.iter_mut().zip(values) {
             *sum += onward_m * value;
         }
+        way.sign
     }
 
     /// Returns the friction as a fraction of the load, if it drives the motion by all evidence; it is negative then.

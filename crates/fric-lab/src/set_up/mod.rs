@@ -1,17 +1,19 @@
 //! What a run tells of its set-up: the scale of the sensor, sign and unit of length and speed, the geometry, and the order of the cables, which are often
 //! wrong on the first day.
 
+mod beside;
+mod cause;
 mod direction;
 mod motion;
 mod order;
 mod scale;
 
+pub(crate) use cause::cause_of_gain;
 use direction::Direction;
 use fric_core::{RobotParams, Sample};
 use motion::Motions;
 use order::Order;
 use scale::Scale;
-pub(crate) use scale::cause_of_gain;
 
 /// Sums over a cable's samples, in their order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,10 +33,15 @@ impl SetUp {
         self.direction.start();
     }
 
+    /// Whether sensor and reference change alike, so that a level between them is a zero and no scale.
+    pub fn is_scale_told(&self) -> bool {
+        self.scale.is_told_alike()
+    }
+
     /// Adds a sample: its length, its reference, and the force at the platform by the sensor without friction and with the model's.
     pub fn add(&mut self, length_m: f64, reference_n: f64, forces_n: [f64; 2]) {
-        self.scale.add(reference_n, forces_n);
-        self.direction.add(length_m, reference_n, forces_n[0]);
+        let sign = self.direction.add(length_m, reference_n, forces_n[0]);
+        self.scale.add(sign, reference_n, forces_n);
     }
 }
 
@@ -77,7 +84,13 @@ impl Signals {
 pub(crate) fn warnings<'a>(cables: impl Iterator<Item = (&'a str, SetUp)> + Clone) -> Vec<String> {
     let mut warnings = scale::warnings(cables.clone().map(|(name, cable)| (name, cable.scale)));
     // On a wrong scale, of the other sign for example, the rest is no friction.
-    let sound = cables.filter(|(_, cable)| cable.scale.ratio().is_none());
+    let sound = cables.filter(|(_, cable)| !cable.scale.is_off());
     warnings.extend(direction::warning(sound.map(|(name, cable)| (name, cable.direction))));
     warnings
+}
+
+/// Returns a warning about cables whose sensor or reference has a zero; `None` without one. A fit or a discovery tells it as a value.
+#[must_use]
+pub(crate) fn zero_warning<'a>(cables: impl Iterator<Item = (&'a str, SetUp)>) -> Option<String> {
+    scale::zero_warning(cables.map(|(name, cable)| (name, cable.scale)))
 }

@@ -292,12 +292,16 @@ fn of_zeros(result: &FitResult) -> Option<String> {
         let is_most = is_shown && 2.0 * offset_n * offset_n > cable.before?.rms_n.powi(2);
         // One of many that agree is no finding.
         let is_open = cable.open.iter().any(|open| open.0.iter().any(|part| part.parameter == key));
-        (is_fitted && is_most && !is_open).then(|| format!("{key} of {} is {} N", cable.name, significant(offset_n)))
+        let zero = || (format!("{key} of {} is {} N", cable.name, significant(offset_n)), cable.is_scale_told);
+        (is_fitted && is_most && !is_open).then(zero)
     });
-    let zeros: Vec<String> = zeros.collect();
+    let (zeros, are_told): (Vec<String>, Vec<bool>) = zeros.unzip();
+    // A load that stays, or a wrong scale, does not tell a zero from a scale.
+    let zero = if are_told.contains(&false) { "zero or a scale" } else { "zero" };
     (!zeros.is_empty()).then(|| {
+        let checked = zero.replace("or a", "and the");
         format!(
-            "Most of the error was a zero and no friction, {}: check the zero of the sensor and the reference.",
+            "Most of the error was a {zero} and no friction, {}: check the {checked} of the sensor and the reference.",
             listed(&zeros)
         )
     })
@@ -368,4 +372,59 @@ pub fn of_hysteresis(result: &HysteresisResult) -> Verdict {
         todo.push("Nothing: the values can go to the control loop.".to_owned());
     }
     Verdict { tone, sentence, todo }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fric_lab::fit::result::{FitReference, LeftOut, Numbers, OpenPartResult, OpenResult};
+
+    /// A fit of one cable whose error before was 10 N with this zero.
+    fn fit(offset_n: f64, standard_error_n: f64, open: Vec<OpenResult>, is_scale_told: bool) -> FitResult {
+        let numbers = |number: f64| Numbers(vec![("offset_n".to_owned(), number)]);
+        let cable = FitCableResult {
+            name: "w".to_owned(),
+            samples: 1000,
+            left_out: LeftOut { flagged: 0, without_reference: 0, warm_up: 0, outliers: 0 },
+            termination: "converged",
+            evaluations: 1,
+            parameters: numbers(offset_n),
+            standard_errors: numbers(standard_error_n),
+            undetermined: Vec::new(),
+            contradicted: Vec::new(),
+            per_log: Vec::new(),
+            open,
+            at_bound: Vec::new(),
+            before: Some(ForceError { rms_n: 10.0, mae_n: 9.0 }),
+            after: Some(ForceError { rms_n: 1.0, mae_n: 0.8 }),
+            is_scale_told,
+            mean_reference_n: Some(50.0),
+            faults: Vec::new(),
+        };
+        let reference = FitReference::Forces;
+        FitResult { format: FitResult::FORMAT, robot: "rig".to_owned(), reference, cables: vec![cable], wrench: None }
+    }
+
+    /// `± 1.96 s` holds the zero with 95 %, so that of 9 N with `s` = 5 N may be none; and 7 N are less than half of the squares of 10 N.
+    #[test]
+    fn a_zero_is_told_if_it_is_most_of_the_error_and_determined() {
+        let told = |offset_n, error_n| of_zeros(&fit(offset_n, error_n, Vec::new(), true));
+        assert_eq!([told(9.0, 5.0), told(9.0, 4.6), told(7.0, 0.1), told(0.0, 0.1)], [const { None }; 4]);
+        for error_n in [0.1, 4.5] {
+            let sentence = told(-9.0, error_n).unwrap();
+            assert!(
+                sentence.contains("was a zero and no friction, offset_n of w is -9 N: check the zero of"),
+                "{sentence}"
+            );
+        }
+        let part =
+            |parameter: &str| OpenPartResult { cable: "w".to_owned(), parameter: parameter.to_owned(), step: 1.0 };
+        let open = vec![OpenResult(vec![part("mu"), part("offset_n")])];
+        assert_eq!(of_zeros(&fit(9.0, 0.1, open, true)), None);
+        let sentence = of_zeros(&fit(9.0, 0.1, Vec::new(), false)).unwrap();
+        assert!(
+            sentence.contains("was a zero or a scale and") && sentence.contains("the zero and the scale of"),
+            "{sentence}"
+        );
+    }
 }
