@@ -65,6 +65,10 @@ fn one_load_tells_inertia_and_no_curve_of_the_sensor() {
     let found = look();
     let names: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
     assert_eq!(names, [Effect::PulleyInertia, Effect::DirectionAsymmetry]);
+    // A gain of nearly nothing shows the one load too, whatever the force, and less noise than there is; it is no rival of a name.
+    let rivals: Vec<Effect> =
+        found.findings.iter().filter_map(|finding| Some(finding.runner_up.as_ref()?.effect)).collect();
+    assert!(!rivals.contains(&Effect::SensorGain), "{rivals:?}");
     let mass_kg = found.after.values[MASS];
     assert!((mass_kg / MASS_KG - 1.0).abs() < 0.01, "{mass_kg} kg");
     let mu = found.after.values[parameters::MU];
