@@ -6,7 +6,7 @@
 //! [`open_directions`](crate::fit::open_directions).
 
 pub use crate::certainty::scores::Scores;
-pub use crate::certainty::undetermined::inverse_of_normal;
 pub use crate::samples::noise::{white_noise_in, white_noise_throughout};
 pub use crate::samples::split::{Block, blocks};
 pub use crate::search::gram::Gram;
+pub use crate::search::gram::inverse_of_normal;

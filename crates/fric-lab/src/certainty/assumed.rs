@@ -9,7 +9,7 @@ use fric_core::effects::dwell_stiction::TIME;
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
-use super::undetermined::inverse_of_normal;
+use crate::search::gram::inverse_of_normal;
 use crate::search::problem::Problem;
 use crate::search::solve::{Unknown, unknowns};
 use crate::search::vector::Parameter;

@@ -10,10 +10,10 @@
 use fric_core::parameters::{MU, Values};
 
 use super::determined::NEGLIGIBLE_MU;
-use crate::fit::report::{OpenCombination, OpenPart};
 use crate::samples::cable::CableRecord;
 use crate::samples::record::Row;
 use crate::search::problem::Problem;
+use crate::search::solve::{OpenCombination, OpenPart};
 use crate::search::vector::Parameter;
 
 /// A cable that goes back for less than this fraction of its way goes one way. With half or double, nothing changes but for logs that hardly go back.

@@ -17,10 +17,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::undetermined::inverse_of_normal;
 use crate::samples::cable::{AddedNoise, CableRecord};
 use crate::samples::noise::white_noise;
 use crate::samples::record::Row;
+use crate::search::gram::inverse_of_normal;
 use crate::search::problem::{Member, Problem};
 use crate::search::solve::unknowns;
 

@@ -16,13 +16,15 @@ use super::determined::{HALF_INTERVAL, Yardstick};
 use super::directions::{LEAST_WEIGHT, OpenDirection, open_directions};
 use super::groups::Groups;
 use super::{assumed, own_noise, unlike_pulleys};
-use crate::fit::report::{OpenCombination, OpenPart};
 use crate::replay::Deviation;
+use crate::samples::selection::Standing;
+use crate::search::gram::inverse_of_normal;
 use crate::search::optimizer::Termination;
 use crate::search::pass::Forces;
 use crate::search::problem::{Comparison, Member, Problem};
 use crate::search::solve::{
-    CONTRADICTION_RATIO, GROSS_CONTRADICTION, NEAR_ERRORS, Solution, Unknown, hold, squares, unknowns,
+    CONTRADICTION_RATIO, GROSS_CONTRADICTION, NEAR_ERRORS, OpenCombination, OpenPart, Solution, Unknown, Weighing,
+    hold, settle, squares, unknowns,
 };
 use crate::search::vector::Coordinate;
 
@@ -137,6 +139,24 @@ impl Knowledge {
         let held = *self.unknowns.get(held)?;
         Some((held, OpenCombination { parts: parts.iter().filter_map(part).collect() }))
     }
+}
+
+/// Solves a problem from the given starts, the most promising first, and holds parameters that the samples do not determine. Marks outliers in
+/// `standings`.
+pub fn solve(
+    problem: &mut Problem<'_>,
+    starts: Vec<Vec<Values>>,
+    given: &[Values],
+    cycle_s: f64,
+    weighing: Weighing,
+    standings: &mut [Standing],
+) -> Solution {
+    let mut solution = settle(problem, starts, given, cycle_s, weighing, standings);
+    solution.hold_undetermined(problem, given, cycle_s);
+    if matches!(problem.comparison, Comparison::Forces) && !solution.unknowns.is_empty() {
+        solution.covariance = reported_covariance(problem, &solution.values, &solution.undetermined);
+    }
+    solution
 }
 
 impl Solution {
@@ -272,19 +292,4 @@ fn uncertainty(
     let leverages = inverse.diagonal().iter().map(|variance| (samples * variance).sqrt()).collect();
     let covariance = DMatrix::from_fn(count, count, finite);
     (Some(matrix), covariance, leverages)
-}
-
-/// Inverse of a matrix `JᵀJ`, scaled meanwhile; what has no effect at all gets an all but infinite variance of its own. `None` where
-/// the matrix is not of numbers.
-#[must_use]
-pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let count = matrix.nrows();
-    let scale: Vec<f64> =
-        matrix.diagonal().iter().map(|square| if *square > 0.0 { square.sqrt().recip() } else { 1.0 }).collect();
-    let scaled = DMatrix::from_fn(count, count, |row, column| {
-        let vanishing = if row == column { 1e-12 } else { 0.0 };
-        matrix[(row, column)] * scale[row] * scale[column] + vanishing
-    });
-    let inverse = scaled.cholesky()?.inverse();
-    Some(DMatrix::from_fn(count, count, |row, column| inverse[(row, column)] * scale[row] * scale[column]))
 }

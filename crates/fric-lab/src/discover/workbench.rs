@@ -8,11 +8,11 @@ use fric_core::parameters::{OFFSET, Values};
 use nalgebra::{DVector, Matrix5, Vector5};
 use rayon::prelude::*;
 
-use crate::certainty::undetermined::inverse_of_normal;
 use crate::fit::{CableRecord, Parameter};
 use crate::samples::record::PerLog;
 use crate::samples::split::{Block, used};
 use crate::search::gang::{Gang, Seat};
+use crate::search::gram::inverse_of_normal;
 use crate::search::pass::{Forces, Part};
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::solve::search_near;

@@ -8,11 +8,12 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 
-use super::report::{CableFit, ForceErrors, LogValue, OpenCombination};
+use super::report::{CableFit, ForceErrors, LogValue};
 use super::{FitOptions, Progress, start};
 use crate::candidates::newcomers::with_newcomers;
 use crate::certainty::log_zeros::{LogZeroEstimate, log_zeros};
 use crate::certainty::one_way;
+use crate::certainty::undetermined::solve;
 use crate::replay::Deviation;
 use crate::samples::cable::{CableRecord, Zeroed};
 use crate::samples::interpolated::measured;
@@ -22,7 +23,7 @@ use crate::samples::selection::Standing;
 use crate::search::gang::{Gang, Seat};
 use crate::search::pass::Forces;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
-use crate::search::solve::{NEAR_ERRORS, Solution, Unknown, solve};
+use crate::search::solve::{NEAR_ERRORS, OpenCombination, Solution, Unknown};
 use crate::search::vector::Parameter;
 use crate::set_up::SetUp;
 

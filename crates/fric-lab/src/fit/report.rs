@@ -9,6 +9,7 @@ use crate::samples::cable::{CableRecord, Zeroed};
 use crate::samples::record::LogZero;
 use crate::samples::selection::SampleCounts;
 use crate::search::optimizer::Termination;
+use crate::search::solve::OpenCombination;
 use crate::search::vector::Parameter;
 use crate::set_up::SetUp;
 
@@ -23,25 +24,6 @@ pub struct ForceErrors {
     pub before_n: Deviation,
     /// Compensated force minus reference, N.
     pub after_n: Deviation,
-}
-
-/// A combination of parameters that the samples leave open: changing them together by these steps has no effect.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OpenCombination {
-    /// The parameters that change.
-    pub parts: Vec<OpenPart>,
-}
-
-/// A parameter in a combination.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OpenPart {
-    /// Index of the cable in the robot.
-    pub cable: usize,
-    /// The parameter.
-    pub parameter: Parameter,
-    /// Its part of a step of 1.96 standard errors, in its unit; not finite for a parameter that has no effect at all. Of a zero that motion one way leaves
-    /// open, of a step as large as takes all friction for a zero.
-    pub step: f64,
 }
 
 /// The value of a parameter in one of several logs.

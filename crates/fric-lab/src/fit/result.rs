@@ -9,13 +9,14 @@ use serde::{Serialize, Serializer};
 
 use super::error::FitError;
 use super::readiness::Readiness;
-use super::report::{CableFit, LogValue, OpenCombination, OpenPart, WrenchFit};
+use super::report::{CableFit, LogValue, WrenchFit};
 use super::summary;
 use crate::discover::RecordingFault;
 use crate::discover::result::FaultResult;
 use crate::errors::{ForceError, WrenchError, WrenchResult};
 use crate::replay::WrenchReference;
 use crate::search::optimizer::Termination;
+use crate::search::solve::{OpenCombination, OpenPart};
 use crate::search::vector::Parameter;
 use crate::set_up;
 use crate::text::listed;

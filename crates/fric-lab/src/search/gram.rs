@@ -145,6 +145,21 @@ impl Triangle {
     }
 }
 
+/// Inverse of a matrix `JᵀJ`, scaled meanwhile; what has no effect at all gets an all but infinite variance of its own. `None` where
+/// the matrix is not of numbers.
+#[must_use]
+pub fn inverse_of_normal(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let count = matrix.nrows();
+    let scale: Vec<f64> =
+        matrix.diagonal().iter().map(|square| if *square > 0.0 { square.sqrt().recip() } else { 1.0 }).collect();
+    let scaled = DMatrix::from_fn(count, count, |row, column| {
+        let vanishing = if row == column { 1e-12 } else { 0.0 };
+        matrix[(row, column)] * scale[row] * scale[column] + vanishing
+    });
+    let inverse = scaled.cholesky()?.inverse();
+    Some(DMatrix::from_fn(count, count, |row, column| inverse[(row, column)] * scale[row] * scale[column]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

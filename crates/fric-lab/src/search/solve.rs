@@ -1,14 +1,12 @@
-//! Solves a problem from start values to estimates with covariance: search, outliers, undetermined parameters.
+//! Solves a problem from start values to estimates: search and outliers.
 
 use fric_core::parameters::{SIGMA, Values};
 use nalgebra::DMatrix;
 
 use super::optimizer;
 use super::optimizer::{Minimum, Termination};
-use super::problem::{Comparison, Loss, Member, Problem};
+use super::problem::{Loss, Member, Problem};
 use super::vector::{Coordinate, Parameter, with};
-use crate::certainty::undetermined::reported_covariance;
-use crate::fit::report::OpenCombination;
 use crate::samples::selection::Standing;
 
 /// Deviations beyond this many standard deviations count as outliers if their neighbours do not share them.
@@ -53,6 +51,25 @@ pub struct Unknown {
     pub parameter: Parameter,
 }
 
+/// A combination of parameters that the samples leave open: changing them together by these steps has no effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenCombination {
+    /// The parameters that change.
+    pub parts: Vec<OpenPart>,
+}
+
+/// A parameter in a combination.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenPart {
+    /// Index of the cable in the robot.
+    pub cable: usize,
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its part of a step of 1.96 standard errors, in its unit; not finite for a parameter that has no effect at all. Of a zero that motion one way leaves
+    /// open, of a step as large as takes all friction for a zero.
+    pub step: f64,
+}
+
 /// The solution of a problem.
 #[derive(Clone, Debug)]
 pub struct Solution {
@@ -72,25 +89,7 @@ pub struct Solution {
     pub evaluation_count: usize,
 }
 
-/// Solves a problem from the given starts, the most promising first, and holds parameters that the samples do not determine. Marks outliers in
-/// `standings`.
-pub fn solve(
-    problem: &mut Problem<'_>,
-    starts: Vec<Vec<Values>>,
-    given: &[Values],
-    cycle_s: f64,
-    weighing: Weighing,
-    standings: &mut [Standing],
-) -> Solution {
-    let mut solution = settle(problem, starts, given, cycle_s, weighing, standings);
-    solution.hold_undetermined(problem, given, cycle_s);
-    if matches!(problem.comparison, Comparison::Forces) && !solution.unknowns.is_empty() {
-        solution.covariance = reported_covariance(problem, &solution.values, &solution.undetermined);
-    }
-    solution
-}
-
-/// Does the same with all parameters free, determined or not.
+/// Solves a problem from the given starts, the most promising first, with all parameters free, determined or not. Marks outliers in `standings`.
 pub(crate) fn settle(
     problem: &mut Problem<'_>,
     starts: Vec<Vec<Values>>,

@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::certainty::scores::Scores;
-use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::workbench::{Trial, Workbench};
 use crate::fit::Parameter;
+use crate::search::gram::inverse_of_normal;
 
 /// Returns the greatest ratio of two variances over some of a model's parameters: the variance under correlated residuals divided by that under
 /// independent residuals. It is at least 1, and infinite where nothing is known.

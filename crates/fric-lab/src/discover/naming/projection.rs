@@ -6,7 +6,7 @@ use fric_core::parameters::Values;
 use nalgebra::{DMatrix, DVector};
 
 use super::evidence::Memory;
-use crate::certainty::undetermined::inverse_of_normal;
+use crate::search::gram::inverse_of_normal;
 use crate::search::problem::{Problem, ZeroLevers};
 
 /// Several signals, in one cycle after the other: appends the number of each in a cycle, NaN where there is none.

@@ -13,11 +13,11 @@ use realfft::RealFftPlanner;
 use super::contacts::Contacts;
 use super::mean;
 use super::places::{Excess, LEAST_SIGNIFICANCE, random_sign, significance};
-use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::workbench::{Model, Workbench};
 use crate::fit::CableRecord;
 use crate::samples::bins::Bins;
 use crate::samples::conditions::{Condition, Spacing};
+use crate::search::gram::inverse_of_normal;
 use crate::search::problem::Problem;
 
 /// Windows that a record is divided into at most: of 2 ms in a minute, of 0.1 s in an hour.

@@ -9,12 +9,12 @@ use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 
 use super::geometry::{Changes, Description, Geometry};
 use crate::certainty::scores::Scores;
-use crate::certainty::undetermined::inverse_of_normal;
 use crate::fit::{CableRecord, Parameter};
 use crate::replay::{Deviation, WrenchReference};
 use crate::samples::noise::white_noise;
 use crate::samples::split::{Block, used};
 use crate::search::gram::Gram;
+use crate::search::gram::inverse_of_normal;
 use crate::search::optimizer::minimize;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::vector::Coordinate;

@@ -16,10 +16,10 @@ use super::bench::{Bench, Model};
 use super::candidate::Candidate;
 use super::geometry::Geometry;
 use crate::candidates::catalogue::{fitted, starts};
-use crate::certainty::undetermined::inverse_of_normal;
 use crate::effects::Around;
 use crate::fit::Parameter;
 use crate::search::gram::Gram;
+use crate::search::gram::inverse_of_normal;
 use crate::search::pass::{Forces, Part};
 use crate::search::stream::Stream;
 

@@ -8,10 +8,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::certainty::determined::Yardstick;
-use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::naming::STRONG_BIC;
 use crate::fit::Parameter;
 use crate::search::gram::Gram;
+use crate::search::gram::inverse_of_normal;
 use crate::search::problem::Problem;
 use fric_core::parameters::Values;
 

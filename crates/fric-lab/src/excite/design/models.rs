@@ -208,7 +208,7 @@ impl Studio<'_> {
                 let yardstick =
                     crate::certainty::undetermined::yardsticks(&problem, &[model.values]).first().copied()?;
                 let (matrix, ..) = problem.gram(&[model.values])?.normal_equations();
-                let inverse = crate::certainty::undetermined::inverse_of_normal(&matrix)?;
+                let inverse = crate::search::gram::inverse_of_normal(&matrix)?;
                 let covariance = &inverse * (noise_n * noise_n)
                     + crate::certainty::unlike_pulleys::covariance(&problem, &[model.values], &inverse);
                 #[expect(clippy::cast_precision_loss, reason = "a count of samples")]

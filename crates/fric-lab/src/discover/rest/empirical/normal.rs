@@ -3,7 +3,7 @@
 use fric_core::effects::empirical::SHARES;
 use nalgebra::{DMatrix, DVector};
 
-use crate::certainty::undetermined::inverse_of_normal;
+use crate::search::gram::inverse_of_normal;
 
 /// Penalty on the size of the table, on the same scale. It assigns to friction what both table and friction can explain.
 const RIDGE: f64 = 1e-6;

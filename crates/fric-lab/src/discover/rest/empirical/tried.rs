@@ -9,9 +9,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::layout::{Changes, Layout, condition, shares};
 use super::normal::Rows;
-use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::workbench::{Model, Workbench};
 use crate::fit::Parameter;
+use crate::search::gram::inverse_of_normal;
 
 /// The same minimum in conditions where the table was not learned, if there is an excess.
 const LEAST_CLOSED_ELSEWHERE: f64 = 0.25;

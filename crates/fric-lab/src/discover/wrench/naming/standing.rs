@@ -4,10 +4,10 @@ use fric_core::effects::Effect;
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::catalogue::fitted;
-use crate::certainty::undetermined::inverse_of_normal;
 use crate::discover::wrench::bench::{Bench, Model, Trial, Unknown};
 use crate::discover::wrench::candidate::Candidate;
 use crate::fit::Parameter;
+use crate::search::gram::inverse_of_normal;
 
 /// The certainty of a name's parameters.
 pub struct Standing {
