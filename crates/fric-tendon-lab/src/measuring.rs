@@ -6,6 +6,7 @@ use fric_tendon::file::ManipulatorFile;
 
 use super::error::ContinuumError;
 use super::run::{Run, RunSample};
+use super::shape_errors::ComputedShape;
 
 /// Returns the run in the base frame, with a corrected sensor at the base. Shifts stay unchanged: [`Gratings`](super::gratings::Gratings) removes
 /// their step and drift.
@@ -51,6 +52,30 @@ pub fn as_measured(samples: &[RunSample], file: &ManipulatorFile) -> Vec<RunSamp
         }
     };
     samples.iter().map(measure).collect()
+}
+
+/// Returns how far the disks of computed shapes move in the time `lag_s` before each sample, m; before the first sample and after the last they rest. The path is
+/// that of the model, which has no noise: markers that are interpolated between samples would have less of it than others.
+pub(super) fn moved_m(times_s: &[f64], shapes: &[ComputedShape], lag_s: f64) -> Vec<Vec<[f64; 2]>> {
+    let before = |time_s: f64| {
+        let behind = times_s.partition_point(|other_s| *other_s < time_s).clamp(1, times_s.len() - 1);
+        let [from_s, to_s] = [times_s[behind - 1], times_s[behind]];
+        let share = ((time_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0);
+        let [one, other] =
+            [behind - 1, behind].map(|place| shapes.get(place).map_or(&[][..], |shape| &shape.disk_position_m));
+        let between = move |(one, other): (&[f64; 2], &[f64; 2])| {
+            [0, 1].map(|axis| one[axis] + share * (other[axis] - one[axis]))
+        };
+        one.iter().zip(other).map(between).collect::<Vec<[f64; 2]>>()
+    };
+    if times_s.len() < 2 {
+        return Vec::new();
+    }
+    let of = |(time_s, shape): (&f64, &ComputedShape)| {
+        let places = shape.disk_position_m.iter().zip(before(time_s - lag_s));
+        places.map(|([x_m, y_m], [before_x_m, before_y_m])| [x_m - before_x_m, y_m - before_y_m]).collect()
+    };
+    times_s.iter().zip(shapes).map(of).collect()
 }
 
 /// Returns the tension at the base at any time, N; `own_n` if there are no samples.

@@ -142,6 +142,15 @@ impl Run {
         run
     }
 
+    /// Returns the run with other markers, of the same number in each sample.
+    pub(super) fn with_markers(&self, marker_m: Vec<Vec<[f64; 2]>>) -> Self {
+        let mut run = self.clone();
+        for (sample, marker_m) in run.samples.iter_mut().zip(marker_m) {
+            sample.marker_m = marker_m;
+        }
+        run
+    }
+
     /// Returns the run with a step taken off the shifts of all gratings from a time on.
     pub(super) fn without_step(mut self, from_s: f64, step_nm: f64) -> Self {
         for sample in self.samples.iter_mut().filter(|sample| sample.time_s >= from_s) {

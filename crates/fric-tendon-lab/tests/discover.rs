@@ -1,7 +1,9 @@
 //! What is hidden in a simulated run is named, and nothing else.
 
 mod intervals;
+mod marker_faults;
 mod markers;
+mod pairs;
 
 use fric_lab::fit::Progress;
 use fric_tendon::edit::{GratingLine, ManipulatorEdit, rewrite};

@@ -14,7 +14,7 @@ use super::extended_file::{drift, edit};
 use super::final_fit::{Final, shared_mu};
 use super::friction::model::{Effect, Model, Parameter};
 use super::friction::naming::{Finding, Outcome, Tried};
-use super::goes_with::{of_markers, of_tensions};
+use super::goes_with::{GoesWith, of_markers, of_tensions};
 use super::machine::Named;
 use super::markers::MarkerFit;
 use super::noise::{excess_n, rms_n};
@@ -23,8 +23,10 @@ use super::result::{Manipulator, MarkerError, TendonMarkers};
 use super::worse::Worse;
 
 /// Returns the result of an outcome, with the changes to write. `named` lists the findings that are already in the file of the case.
-pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> TendonDiscovery {
-    let Outcome { noise_n, verdict, before, after, last, findings, tried, markers, .. } = outcome;
+/// `faults` lists what is wrong with the markers of the run, which is then unexplained.
+pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], faults: &[GoesWith], log: &str) -> TendonDiscovery {
+    let verdict = &if faults.is_empty() { outcome.verdict } else { Verdict::Unexplained };
+    let Outcome { noise_n, before, after, last, findings, tried, markers, .. } = outcome;
     let closed = |fit: &Fit| {
         let gap_n = rms_n(before) - noise_n;
         (*verdict != Verdict::Complete && gap_n > 0.0).then(|| (1.0 - (rms_n(fit) - noise_n) / gap_n).min(1.0))
@@ -98,7 +100,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], log: &str) -> T
         undetermined: Vec::new(),
         revised: Vec::new(),
         faults: Absent,
-        unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome)),
+        unexplained: (*verdict == Verdict::Unexplained).then(|| rest(case, outcome, faults)),
     };
     TendonDiscovery {
         result: DiscoverResult {
@@ -139,7 +141,7 @@ fn marker_errors(markers: &[Option<MarkerFit>; 2]) -> Option<TendonMarkers> {
 }
 
 /// Returns the rest: of the tensions, and of the markers if it exceeds the noise.
-fn rest(case: &Case<'_>, outcome: &Outcome) -> UnexplainedResult<Manipulator> {
+fn rest(case: &Case<'_>, outcome: &Outcome, faults: &[GoesWith]) -> UnexplainedResult<Manipulator> {
     let Outcome { given, after, last, are_tensions_explained, markers: [_, markers], .. } = outcome;
     let off = markers.as_ref().filter(|markers| !markers.is_noise());
     // Wrong gratings cause wrong shapes. The bending is reported if the gratings cannot explain the shapes.
@@ -154,7 +156,7 @@ fn rest(case: &Case<'_>, outcome: &Outcome) -> UnexplainedResult<Manipulator> {
         rms_mm: off.map(|markers| 1e3 * markers.excess_m()),
         places: places.concat(),
         intervals_s: Absent,
-        goes_with: bending.into_iter().chain(tensions).collect(),
+        goes_with: faults.iter().cloned().chain(bending).chain(tensions).collect(),
     }
 }
 

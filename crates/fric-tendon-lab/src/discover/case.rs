@@ -32,6 +32,8 @@ pub struct Case<'a> {
     pub is_dead: Vec<Vec<bool>>,
     /// Error of each tension for one standard error of its calibration line's constant and of its slope, N.
     pub line_error_n: Vec<Vec<[f64; 2]>>,
+    /// Errors of each line that tensions and markers show together, in standard errors of its constant and slope. Shapes are computed without them.
+    pub found_lines: Vec<[f64; 2]>,
     /// Slope of each grating's calibration, N/nm.
     pub newton_per_nm: Vec<f64>,
     /// Noise of the gratings, N, used to weight the errors of the calibration lines; estimated from the given model's residual.
@@ -92,6 +94,7 @@ impl<'a> Case<'a> {
             noise_n: 0.0,
             base_error_n,
             line_error_n: observed_n.iter().map(line_errors).collect(),
+            found_lines: vec![[0.0; 2]; gratings.lines().len()],
             observed_n,
             is_dead: kept.iter().filter_map(|place| Some(judged.get(*place)?.is_bridged.clone())).collect(),
             samples,
@@ -132,6 +135,7 @@ impl<'a> Case<'a> {
             observed_n: self.observed_n.clone(),
             is_dead: self.is_dead.clone(),
             line_error_n: self.line_error_n.clone(),
+            found_lines: self.found_lines.clone(),
             newton_per_nm: self.newton_per_nm.clone(),
             held_out: vec![false; self.held_out.len()],
             ..*self

@@ -106,7 +106,7 @@ pub fn shared_mu(model: &Model) -> f64 {
 
 /// Minimum relative difference of a hole's μ from that of the others to count as its own. Equal holes differ by ±10 %. At 0.2, holes are named in
 /// some correct files; at twice this value, a hole with half as much friction again as the others is missed.
-const OWN_RATIO: f64 = 0.3;
+pub const OWN_RATIO: f64 = 0.3;
 
 /// Returns how clearly the μ of a hole differs from that of the others; 1 is the threshold. The difference is measured in half widths of its 95 %
 /// interval and in [`OWN_RATIO`]. Each μ counts relative to the value in the file, if the file states one.

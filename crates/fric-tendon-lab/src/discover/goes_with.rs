@@ -23,15 +23,23 @@ const USUAL_WAVELENGTH_NM: f64 = 1550.0;
 pub struct GoesWith {
     /// `grating` or `marker`: the signal of the rest.
     pub signal: &'static str,
-    /// `temperature`, `temperature_step`, `temperature_drift`, `tension`; `bending`, `frame`, `frame_drift`.
+    /// `temperature`, `temperature_step`, `temperature_drift`, `tension`; `bending`, `frame`, `frame_drift`; of faults of the recording `frozen`,
+    /// `exchanged`, `reference_delay`.
     pub with: &'static str,
-    /// Fraction of the squares that it explains.
-    pub share: f64,
+    /// Fraction of the squares that it explains; `None` for a fault of the recording, which the run is compared without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub share: Option<f64>,
     /// Its size.
     pub parameters: Numbers,
     /// A sentence for people.
     #[serde(skip)]
     pub sentence: String,
+}
+
+impl GoesWith {
+    fn explained(&self) -> f64 {
+        self.share.unwrap_or(0.0)
+    }
 }
 
 /// Rows of regressors, with the explained quantity last. Rows with a gap are left out.
@@ -67,8 +75,8 @@ fn numbers(pairs: &[(&str, f64)]) -> Numbers {
 }
 
 fn best(candidates: impl IntoIterator<Item = GoesWith>) -> Option<GoesWith> {
-    let likely = candidates.into_iter().filter(|one| one.share >= LEAST_SHARE);
-    likely.max_by(|one, other| one.share.total_cmp(&other.share))
+    let likely = candidates.into_iter().filter(|one| one.share >= Some(LEAST_SHARE));
+    likely.max_by(|one, other| one.explained().total_cmp(&other.explained()))
 }
 
 /// Returns the step of all shifts that explains most of a rest: its fraction of the squares, the shift, nm, and the sample at which it starts. One
@@ -108,7 +116,7 @@ pub fn of_tensions(case: &Case<'_>, given: &Fit) -> Option<GoesWith> {
     let found = |with, share, parameters: &[(&str, f64)], text: String| GoesWith {
         signal: "grating",
         with,
-        share,
+        share: Some(share),
         parameters: numbers(parameters),
         sentence: format!("{:.0} % of it {text}", 100.0 * share),
     };
@@ -156,7 +164,8 @@ pub fn of_tensions(case: &Case<'_>, given: &Fit) -> Option<GoesWith> {
     });
     // A step has one more parameter, its time, and approximates a drift or a constant.
     let simple = best([constant, drift, tension].into_iter().flatten());
-    let is_clearer = |step: &GoesWith| simple.as_ref().is_none_or(|one| 1.0 - step.share < 0.5 * (1.0 - one.share));
+    let is_clearer =
+        |step: &GoesWith| simple.as_ref().is_none_or(|one| 1.0 - step.explained() < 0.5 * (1.0 - one.explained()));
     best(step.filter(is_clearer)).or(simple)
 }
 
@@ -177,7 +186,7 @@ pub fn of_markers(case: &Case<'_>, fit: &Fit, markers: &MarkerFit) -> Option<Goe
     let found = |with, share, parameters: &[(&str, f64)], text: String| GoesWith {
         signal: "marker",
         with,
-        share,
+        share: Some(share),
         parameters: numbers(parameters),
         sentence: format!("{:.0} % of it {text}", 100.0 * share),
     };
@@ -219,7 +228,7 @@ pub fn of_markers(case: &Case<'_>, fit: &Fit, markers: &MarkerFit) -> Option<Goe
     });
     // The frame has two more parameters than the bending.
     let frame = best([still, moving].into_iter().flatten());
-    let is_clearer = |bending: &GoesWith| frame.as_ref().is_none_or(|one| bending.share > one.share - 0.02);
+    let is_clearer = |bending: &GoesWith| frame.as_ref().is_none_or(|one| bending.explained() > one.explained() - 0.02);
     best(bending.filter(is_clearer)).or(frame)
 }
 

@@ -82,16 +82,20 @@ impl MarkerFit {
     }
 }
 
-/// Returns the tensions measured by the gratings, with known drifts removed; those of the model where a grating is dead.
+/// Returns the tensions measured by the gratings, without known drifts and errors of the lines; those of the model where a grating is dead.
 fn tensions(case: &Case<'_>, fit: &Fit) -> Vec<Vec<f64>> {
     let start_s = case.samples.first().map_or(0.0, |sample| sample.time_s);
-    let rows = case.observed_n.iter().zip(&case.is_dead).zip(&fit.tension_n).zip(&case.samples);
-    rows.map(|(((observed_n, is_dead), model_n), sample)| {
-        let segments = observed_n.iter().zip(is_dead).zip(model_n).zip(&fit.model.drift_n_per_s);
-        let tension_n = |(((observed_n, is_dead), model_n), drift_n_per_s): (((&f64, &bool), &f64), &f64)| {
-            if *is_dead { *model_n } else { observed_n - drift_n_per_s * (sample.time_s - start_s) }
-        };
-        segments.map(tension_n).collect()
+    let measured = case.observed_n.iter().zip(&case.line_error_n).zip(&case.is_dead);
+    let rows = measured.zip(&fit.tension_n).zip(&case.samples);
+    rows.map(|((((observed_n, line_error_n), is_dead), model_n), sample)| {
+        let lines =
+            line_error_n.iter().zip(&case.found_lines).map(|(parts_n, off)| parts_n[0] * off[0] + parts_n[1] * off[1]);
+        let known =
+            lines.zip(&fit.model.drift_n_per_s).map(|(line_n, drift)| line_n + drift * (sample.time_s - start_s));
+        let segments = observed_n.iter().zip(known).zip(is_dead.iter().zip(model_n));
+        segments
+            .map(|((observed_n, known_n), (is_dead, model_n))| if *is_dead { *model_n } else { observed_n - known_n })
+            .collect()
     })
     .collect()
 }

@@ -31,6 +31,7 @@ mod final_fit;
 pub(super) mod friction;
 mod goes_with;
 mod machine;
+mod marker_faults;
 pub(super) mod markers;
 pub(super) mod noise;
 mod places;
@@ -45,6 +46,7 @@ use fric_tendon::edit::ManipulatorEdit;
 use fric_tendon::file::ManipulatorFile;
 
 use self::case::Case;
+use self::friction::model::Effect;
 use self::machine::Machine;
 use self::machine::candidate::Candidate;
 use self::noise::excess_n;
@@ -99,23 +101,29 @@ pub fn discover(
     run.check_sizes(file.params())?;
     let gratings = Gratings::from_file(file)?.ok_or(ContinuumError::NoGratings)?;
     let (run, base_noise) = steadied(run);
-    let run = &run;
+    let (mut run, mut faults) = marker_faults::mended(&run, file.params());
     let base_error_n = base_noise.map_or(0.0, |noise| noise.error_n);
     let kept = thinned(run.samples());
-    let as_given = corrected(run, file)?;
-    let case = Case::new(file, &as_given, &gratings, &kept, base_error_n)?;
-    let Machine { named, tables, mu: mu_of_holes } =
-        machine::search(file, run, progress).unwrap_or_else(|| Machine::none(file));
+    let Machine { named, tables, lines, marker_lag_s, rough, mu: mu_of_holes } =
+        machine::search(file, &run, progress).unwrap_or_else(|| Machine::none(file));
     if progress.is_stopped() {
         return Err(ContinuumError::NotIdentified);
     }
     let extended = if named.is_empty() { None } else { ManipulatorFile::check(tables).ok() };
+    if marker_lag_s != 0.0 {
+        let (ahead, fault) = marker_faults::ahead(&run, extended.as_ref().unwrap_or(file), marker_lag_s)?;
+        run = ahead;
+        faults.push(fault);
+    }
+    let as_given = corrected(&run, file)?;
+    let case = Case { found_lines: lines.clone(), ..Case::new(file, &as_given, &gratings, &kept, base_error_n)? };
     // The search for friction starts with these findings in the file.
     let with_found = match &extended {
         Some(extended) => {
-            let run = corrected(run, extended)?;
+            let run = corrected(&run, extended)?;
             let gratings = Gratings::from_file(extended)?.ok_or(ContinuumError::NoGratings)?;
             let with_found = Case::new(extended, &run, &gratings, &kept, base_error_n)?;
+            let with_found = Case { found_lines: lines, ..with_found };
             let outcome = friction::naming::name(&with_found)?.beside(&case)?;
             // A lag that leaves more than it accounts for is something else.
             let is_lag = named.iter().any(|one| one.candidate == Candidate::TensionLag);
@@ -125,20 +133,31 @@ pub fn discover(
         None => None,
     };
     let (outcome, mut discovery) = if let Some((extended, with_found, outcome)) = with_found {
-        let mut discovery = assemble::told(&with_found, &outcome, &named, log);
+        let mut discovery = assemble::told(&with_found, &outcome, &named, &faults, log);
         let ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, .. } = discovery.edit;
         let bending = ManipulatorEdit::between(file.tables(), extended.tables());
         discovery.edit = ManipulatorEdit { mu, sigma_n_per_m, drift_nm_per_s, ..bending };
         (outcome, discovery)
     } else {
         let outcome = friction::naming::name(&case)?;
-        let discovery = assemble::told(&case, &outcome, &[], log);
+        let discovery = assemble::told(&case, &outcome, &[], &faults, log);
         (outcome, discovery)
     };
     // If the search for friction names nothing but the file changes, the holes get the values of the joint fit.
     let is_settled = outcome.findings.is_empty() && outcome.verdict != Verdict::Unexplained;
     if is_settled && !mu_of_holes.is_empty() && discovery.edit != ManipulatorEdit::default() {
         discovery.edit.mu = mu_of_holes;
+    }
+    if !run.has_markers() {
+        // Friction at a hole may then be that of a segment that bends more or less than the others.
+        let holes = discovery.result.cables.iter_mut().flat_map(|tendon| &mut tendon.effects);
+        for effect in holes.filter(|effect| effect.kind == Effect::HoleFriction(0).kind()) {
+            #[expect(clippy::cast_precision_loss, reason = "a small count")]
+            let is_rough = rough.iter().any(|hole| effect.parameters.get("hole") == Some((hole + 1) as f64));
+            if !is_rough {
+                effect.alike.push(Candidate::SegmentStiffness(0).kind());
+            }
+        }
     }
     discovery.base_noise = base_noise;
     progress.finish_one();

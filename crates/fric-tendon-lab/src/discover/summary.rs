@@ -10,8 +10,7 @@ use fric_lab::text::{listed, quantity, table, wrapped};
 use super::result::{Manipulator, TendonMarkers};
 
 /// What a run without markers does not tell.
-pub const WITHOUT_MARKERS: &str = "the run has none that can be used, so that the bending is not checked: a wrong stiffness, offset or load stays hidden, and friction named at a hole may \
-                                   stand for a softer or stiffer segment.";
+pub const WITHOUT_MARKERS: &str = "the run has none that can be used, so that the bending is not checked: a wrong stiffness, offset or load stays hidden.";
 
 /// Returns the full summary.
 pub fn describe(result: &DiscoverResult<Manipulator>) -> String {
@@ -84,11 +83,13 @@ pub fn describe(result: &DiscoverResult<Manipulator>) -> String {
 /// Returns the effects that may be present instead, in words.
 #[must_use]
 pub fn alternatives(effect: &EffectResult<Manipulator>) -> String {
-    format!(
-        "{}: the run does not tell them apart. The file gets {}; shapes are right with either.",
-        effect.alike.join(", or "),
-        effect.kind
-    )
+    let is_hole = |kind: &str| kind == "hole_friction";
+    let right = if is_hole(effect.kind) || effect.alike.iter().any(|kind| is_hole(kind)) {
+        "tensions are right with either, shapes only with the right one: record markers"
+    } else {
+        "shapes are right with either"
+    };
+    format!("{}: the run does not tell them apart. The file gets {}; {right}.", effect.alike.join(", or "), effect.kind)
 }
 
 impl TendonMarkers {

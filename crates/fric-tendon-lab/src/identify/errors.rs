@@ -10,6 +10,7 @@ use fric_tendon::ManipulatorParams;
 use fric_tendon::file::OneOrEach;
 use nalgebra::{DMatrix, DVector};
 
+use super::arc_error::arc_error_m;
 use super::evaluation::Runs;
 use super::least_squares::{Normal, Solution};
 use super::unknown::Unknown;
@@ -27,8 +28,9 @@ const ARC_RATIO: f64 = 0.1;
 /// Negligible distance as a multiple of the model's own error. At half of it, quiet runs of a correct model come near the bound; at twice, a bending
 /// stiffness that is 0.5 % off is missed.
 pub const PRACTICAL: f64 = 2.5;
-/// Fraction of the model error that acts along one unknown. The error is smooth, and therefore near some combination of a handful of unknowns.
-const ALONG_RATIO: f64 = 0.5;
+/// Fraction of the error of the model's tensions that acts along one unknown. The error is smooth, and therefore near some combination of a handful of
+/// unknowns.
+pub const ALONG_RATIO: f64 = 0.5;
 
 /// Standard error of μ as a fraction of the difference between the two forms of the friction law.
 const LAW_SHARE: f64 = 0.85;
@@ -70,17 +72,13 @@ fn statistical(normal: &Normal, count: usize) -> DMatrix<f64> {
     DMatrix::from_fn(count, count, |row, column| factor(row) * factor(column) * white[(row, column)])
 }
 
-/// Returns the contribution of the model error: of size b in each of N residuals of a signal, and along each unknown by a fraction.
+/// Returns the contribution of the model error. That of the shapes is known at each sample ([`arc_error_m`]) and moves the unknowns by `(JᵀJ)⁻¹Jᵀb`. Of
+/// that of the tensions only the size b in each of N residuals is, of which a fraction acts along each unknown.
 fn systematic(runs: &Runs, solution: &Solution, normal: &Normal) -> DMatrix<f64> {
-    let off = [
-        MODEL_TENSION_RATIO * runs.greatest_tension_n / solution.units.tension_n,
-        runs.model_marker_m / solution.units.marker_m,
-    ];
-    let mut sum = DMatrix::zeros(normal.inverse.nrows(), normal.inverse.ncols());
-    for ((matrix, count), off) in normal.matrices.iter().zip(normal.counts).zip(off) {
-        sum += matrix * (count * (ALONG_RATIO * off).powi(2));
-    }
-    &normal.inverse * sum * &normal.inverse
+    let off = MODEL_TENSION_RATIO * runs.greatest_tension_n / solution.units.tension_n;
+    let of_tensions = &normal.matrices[0] * (normal.counts[0] * (ALONG_RATIO * off).powi(2));
+    let of_shapes = &normal.inverse * solution.pull_of_markers(&arc_error_m(&solution.evaluation));
+    &normal.inverse * of_tensions * &normal.inverse + &of_shapes * of_shapes.transpose()
 }
 
 /// Returns the contribution of holes that differ while the model has one μ for all, or a list that is scaled. Each hole moves the unknowns by its own

@@ -13,7 +13,7 @@ use super::super::discover::thinned;
 use super::super::error::ContinuumError;
 use super::super::fbg::{Calibration, LineError, Tension};
 use super::super::gratings::{GratingSample, Gratings};
-use super::super::measuring::corrected;
+use super::super::measuring::{corrected, moved_m};
 use super::super::run::{Run, RunSample};
 use super::super::shape_errors::{ComputedShape, Way, shapes};
 use super::errors::model_marker_m;
@@ -48,6 +48,11 @@ pub struct State {
 }
 
 impl State {
+    /// Returns the time by which the markers are late, s.
+    fn marker_lag_s(&self) -> f64 {
+        self.unknowns.iter().find(|(unknown, _)| *unknown == Unknown::MarkerLag).map_or(0.0, |(_, lag_s)| *lag_s)
+    }
+
     /// Returns the tables of a state.
     pub fn tables(&self, given: &ManipulatorTables) -> ManipulatorTables {
         let mut tables = given.clone();
@@ -69,6 +74,13 @@ pub struct RunEvaluation {
     measured: Option<Computed>,
     /// Residuals, sample by sample.
     pub rows: Vec<Row>,
+}
+
+impl RunEvaluation {
+    /// Returns the shapes that the markers are compared with, and their manipulator.
+    pub fn shown(&self) -> Option<(&ManipulatorParams, &[ComputedShape])> {
+        self.measured.as_ref().or(self.history.as_ref()).map(|one| (&one.params, one.shapes.as_slice()))
+    }
 }
 
 /// The residual of one sample; NaN where nothing was measured or there is no shape.
@@ -175,7 +187,7 @@ impl<'a> Runs<'a> {
         let runs = self.all.iter().enumerate().map(|(place, run)| {
             let near = near.and_then(|near| near.runs.get(place));
             let gratings = gratings.as_ref().filter(|_| run.whole.has_shifts());
-            run.evaluate(&file, &smooth, gratings, &state.lines, near)
+            run.evaluate(&file, &smooth, gratings, state, near)
         });
         Some(Evaluation { runs: runs.collect::<Option<_>>()? })
     }
@@ -187,7 +199,7 @@ impl One {
         file: &ManipulatorFile,
         smooth: &ManipulatorParams,
         gratings: Option<&Gratings>,
-        lines: &[[f64; 2]],
+        state: &State,
         near: Option<&RunEvaluation>,
     ) -> Option<RunEvaluation> {
         let run = corrected(&self.whole, file).ok()?;
@@ -206,7 +218,7 @@ impl One {
             let rows = self.kept.iter().filter_map(|place| tensions.get(*place));
             let mut all = Vec::with_capacity(samples.len());
             for row in rows {
-                let each = row.iter().zip(gratings.lines().iter().zip(gratings.line_errors())).zip(lines);
+                let each = row.iter().zip(gratings.lines().iter().zip(gratings.line_errors())).zip(&state.lines);
                 let right = |((tension, (line, error)), off): ((&Tension, (&Calibration, &LineError)), &[f64; 2])| {
                     let [constant_n, slope_n] = error.parts_n(line.shift_nm(tension.value_n));
                     tension.value_n - constant_n * off[0] - slope_n * off[1]
@@ -225,6 +237,14 @@ impl One {
             None
         };
         let shown = measured.as_ref().or(history.as_ref());
+        let lag_s = state.marker_lag_s();
+        let late_m = match &history {
+            Some(own) if lag_s != 0.0 => {
+                let times_s: Vec<f64> = samples.iter().map(|sample| sample.time_s).collect();
+                moved_m(&times_s, &own.shapes, lag_s)
+            }
+            _ => Vec::new(),
+        };
         let row = |(place, sample): (usize, &RunSample)| {
             let own = history.as_ref().and_then(|one| one.shapes.get(place));
             let tension_n = match (observed.get(place), own) {
@@ -244,7 +264,10 @@ impl One {
                 };
                 places.flat_map(left).collect()
             };
-            let marker_m = shown.and_then(|one| one.shapes.get(place)).map_or_else(Vec::new, off_disks_m);
+            let mut marker_m = shown.and_then(|one| one.shapes.get(place)).map_or_else(Vec::new, off_disks_m);
+            for (left_m, late_m) in marker_m.iter_mut().zip(late_m.get(place).into_iter().flatten().flatten()) {
+                *left_m += late_m;
+            }
             Row { tension_n, marker_m, own_marker_m: own.map_or_else(Vec::new, off_disks_m) }
         };
         let rows = samples.iter().enumerate().map(row).collect();
@@ -293,7 +316,7 @@ fn same_bits(one: &[f64], other: &[f64]) -> bool {
 }
 
 /// Returns the friction model of the file.
-fn way(file: &ManipulatorFile) -> Way {
+pub fn way(file: &ManipulatorFile) -> Way {
     if file.params().mu(Tendon::Agonist).iter().all(|mu| *mu == 0.0) {
         Way::None
     } else if file.tables().tendon.sigma_n_per_m.is_none() {

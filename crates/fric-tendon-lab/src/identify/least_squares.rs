@@ -109,6 +109,26 @@ impl Solution {
         normal(&self.evaluation, &self.state, &slopes, self.units)
     }
 
+    /// Returns `Jᵀb` in scaled units, for errors b of the markers: run by run and sample by sample, m.
+    pub fn pull_of_markers(&self, off_m: &[Vec<Vec<f64>>]) -> DVector<f64> {
+        let mut pull = DVector::zeros(self.slopes.len());
+        each_row(&self.evaluation, |row, run, sample| {
+            let off_m = off_m.get(run).and_then(|all| all.get(sample));
+            for (place, off_m) in off_m.into_iter().flatten().enumerate() {
+                let by = |slopes: &Slopes| slopes.get(run)?.get(sample)?.get(row.tension_n.len() + place).copied();
+                let numbers = DVector::from_iterator(
+                    self.slopes.len(),
+                    self.slopes.iter().map(|one| by(one).unwrap_or(f64::NAN) / self.units.marker_m),
+                );
+                let is_compared = row.marker_m.get(place).is_some_and(|left_m| left_m.is_finite());
+                if is_compared && numbers.iter().all(|one| one.is_finite()) {
+                    pull += numbers * (off_m / self.units.marker_m);
+                }
+            }
+        });
+        pull
+    }
+
     /// Returns the slopes with respect to other unknowns.
     pub fn slopes_by(&self, runs: &Runs, unknowns: &[Unknown]) -> Option<Vec<Slopes>> {
         let mut state = self.state.clone();

@@ -4,6 +4,7 @@
 //! comparison, `least_squares` searches, `errors` computes the intervals). Numbers that the runs do not determine are held as in the file and
 //! reported: they lie along directions with small eigenvalues of the information matrix, as in the identification of cables.
 
+pub(super) mod arc_error;
 mod attempt;
 pub(super) mod errors;
 pub(super) mod evaluation;

@@ -48,6 +48,8 @@ pub enum Unknown {
     BaseOffset,
     /// Lag of the tension sensor at the base.
     BaseLag,
+    /// Time by which all markers are recorded late. It belongs to the recording, so no file states it.
+    MarkerLag,
     /// Common shift of all gratings from a time on.
     CommonShift,
     /// Drift of one grating's shift.
@@ -75,6 +77,7 @@ impl Unknown {
             Self::BaseGain => "base_gain".to_owned(),
             Self::BaseOffset => "base_offset_n".to_owned(),
             Self::BaseLag => "base_lag_s".to_owned(),
+            Self::MarkerLag => "delay_s".to_owned(),
             Self::CommonShift => "shift_nm".to_owned(),
             Self::Drift(grating) => format!("drift_{}_nm_per_s", grating + 1),
         }
@@ -183,6 +186,7 @@ impl Unknown {
                 let sensor = tables.base_sensor.unwrap_or_default();
                 tables.base_sensor = Some(BaseSensorTable { lag_s: sensor.lag_s + distance, ..sensor });
             }
+            Self::MarkerLag => {}
             Self::CommonShift => {
                 if let Some(gratings) = &mut tables.gratings {
                     gratings.common_step_nm = Some(gratings.common_step_nm.unwrap_or(0.0) + distance);
@@ -235,6 +239,7 @@ impl Unknown {
             Self::BaseGain => sensor.gain,
             Self::BaseOffset => sensor.offset_n,
             Self::BaseLag => sensor.lag_s,
+            Self::MarkerLag => 0.0,
             Self::CommonShift => tables.gratings.as_ref().and_then(|table| table.common_step_nm).unwrap_or(0.0),
             Self::Drift(grating) => {
                 let stated = tables.gratings.as_ref().and_then(|table| table.drift_nm_per_s.get(grating)).copied();
@@ -279,7 +284,7 @@ impl Unknown {
             Self::GravityAngle => 0.1,
             Self::Sigma => 0.7,
             Self::BaseOffset => 0.02 * greatest_tension_n,
-            Self::BaseLag => 0.2,
+            Self::BaseLag | Self::MarkerLag => 0.2,
             Self::CommonShift => 0.01,
             Self::Drift(_) => 0.001,
         }
@@ -307,7 +312,7 @@ impl Unknown {
     pub fn rank(self) -> u8 {
         match self {
             Self::Sigma | Self::Drift(_) | Self::CommonShift => 0,
-            Self::BaseLag => 1,
+            Self::BaseLag | Self::MarkerLag => 1,
             Self::BaseOffset => 2,
             Self::BaseGain => 3,
             Self::Pitch(_) => 4,

@@ -227,6 +227,18 @@ pub fn elastica(
     Ok((elastica.disk_position_m(), elastica.bend_rad()))
 }
 
+/// Returns the centres of the disks, m, of the elastica under tensions of the first tendon that follow one another; `None` where it has no minimum nearby.
+pub(crate) fn elastica_along<'a>(
+    params: &ManipulatorParams,
+    tension_n: impl Iterator<Item = &'a [f64]>,
+) -> impl Iterator<Item = Option<Vec<[f64; 2]>>> {
+    let mut elastica = Elastica::new(params, TendonSimulationOptions::default().link_count);
+    tension_n.map(move |tension_n| {
+        let is_settled = tension_n.iter().all(|one| one.is_finite()) && elastica.settle([tension_n, &[]]).is_ok();
+        is_settled.then(|| elastica.disk_position_m())
+    })
+}
+
 impl TendonSimulationOptions {
     fn check(&self) -> Result<(), ContinuumError> {
         #[expect(clippy::cast_precision_loss, reason = "a number of links")]

@@ -41,10 +41,13 @@ pub enum Candidate {
     Line(usize),
     /// The calibration lines of all gratings.
     AllLines,
+    /// All markers, recorded late.
+    LateMarkers,
 }
 
 impl Candidate {
-    /// Returns the candidates that the run can show. Those of the bending need markers.
+    /// Returns the candidates that the run can show. Those of the bending need markers, but for a soft or stiff segment: it turns the tendon more or less
+    /// at its holes, and so has more or less friction.
     pub fn all(tables: &ManipulatorTables, has_markers: bool) -> Vec<Self> {
         let count = tables.disk_count;
         let mut all =
@@ -52,8 +55,10 @@ impl Candidate {
         for place in 0..count {
             all.extend([Self::Hole(place), Self::Drift(place), Self::Line(place)]);
         }
+        all.extend((0..count).map(Self::SegmentStiffness));
         if has_markers {
             all.extend([
+                Self::LateMarkers,
                 Self::Stiffness,
                 Self::UnevenPitch,
                 Self::TendonOffset,
@@ -62,7 +67,6 @@ impl Candidate {
                 Self::TipLoad,
                 Self::GravityDirection,
             ]);
-            all.extend((0..count).map(Self::SegmentStiffness));
         }
         all.retain(|one| match one.frees(tables).as_slice() {
             [] => !one.is_named(),
@@ -72,9 +76,12 @@ impl Candidate {
     }
 
     /// Whether the joint search names the candidate. The others only keep wrong names from being given: friction of holes and drifts are named by the
-    /// search on the tensions, and a wrong calibration line has no name.
+    /// search on the tensions, late markers are a fault of the recording, and a wrong calibration line has no name.
     pub fn is_named(self) -> bool {
-        !matches!(self, Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines)
+        !matches!(
+            self,
+            Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines | Self::LateMarkers
+        )
     }
 
     /// Returns the name used in results.
@@ -94,6 +101,7 @@ impl Candidate {
             Self::Hole(_) | Self::AllHoles => "hole_friction",
             Self::Drift(_) => "sensor_drift",
             Self::Line(_) | Self::AllLines => "calibration",
+            Self::LateMarkers => "reference_delay",
         }
     }
 
@@ -114,6 +122,7 @@ impl Candidate {
             Self::BaseOffset => vec![Unknown::BaseOffset],
             Self::TensionLag => vec![Unknown::BaseLag],
             Self::Drift(grating) => vec![Unknown::Drift(grating)],
+            Self::LateMarkers => vec![Unknown::MarkerLag],
             Self::Hole(_) | Self::AllHoles | Self::Line(_) | Self::AllLines => Vec::new(),
         }
     }
@@ -131,7 +140,7 @@ impl Candidate {
             Self::Precurvature => 3,
             Self::BaseGain | Self::BaseOffset => 2,
             Self::SegmentStiffness(_) | Self::UnevenPitch | Self::TensionLag => 1,
-            Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines => 0,
+            Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines | Self::LateMarkers => 0,
         }
     }
 
@@ -178,7 +187,9 @@ impl Candidate {
                 "The tension at the base is recorded late or early.",
                 "Take its time stamps from the clock of the gratings, and its filter off.",
             ],
-            Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines => ["", ""],
+            Self::Hole(_) | Self::AllHoles | Self::Drift(_) | Self::Line(_) | Self::AllLines | Self::LateMarkers => {
+                ["", ""]
+            }
         }
     }
 }

@@ -14,11 +14,12 @@ use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
 use rayon::prelude::*;
 
 use self::candidate::Candidate;
-use self::joint::{Jacobian, Joint, Point, Set, Units};
+use self::joint::{Jacobian, Joint, Point, Set, StandardError, Units};
 use crate::discover::case::thinned_to;
+use crate::discover::final_fit::OWN_RATIO;
 use crate::discover::friction::naming::LEAST_EVIDENCE;
 use crate::discover::noise::PRACTICAL_RATIO;
-use crate::identify::errors::{MODEL_TENSION_RATIO, PRACTICAL};
+use crate::identify::errors::MODEL_TENSION_RATIO;
 use crate::identify::unknown::Unknown;
 use crate::run::{Run, RunSample};
 
@@ -32,6 +33,9 @@ const MOST_CANDIDATES: usize = 4;
 /// Remaining squares per number above which a fit counts as stuck, and the points from which it is restarted, in widest intervals.
 const STUCK_RATIO: f64 = 2.0;
 const RESTARTS: [f64; 6] = [-6.0, -4.0, -2.0, 2.0, 4.0, 6.0];
+/// Error of the way that the disks go while the markers are late, as a fraction of it: the holes differ. At half of it a delay of 0.4 s in a single pull passes
+/// for a precurvature too; at twice, what moves the tip less than a fiftieth of that way has no name beside a delay.
+const PATH_RATIO: f64 = 0.01;
 /// Candidates that promise this fraction of the best one's evidence are fitted completely before they are compared.
 const NEAR_RATIO: f64 = 0.8;
 /// Temperature sensitivity of a silica grating, `α_Λ + α_n`, 1/K, and the C-band wavelength, nm, which is used if the file states none.
@@ -43,6 +47,12 @@ pub struct Machine {
     pub named: Vec<Named>,
     /// The tables of the file with the findings.
     pub tables: ManipulatorTables,
+    /// Errors of each grating's line, in standard errors of its constant and slope.
+    pub lines: Vec<[f64; 2]>,
+    /// Time by which all markers are late, s; 0 unless it is clear.
+    pub marker_lag_s: f64,
+    /// Holes, counted from 0, that differ in a way which neither another bending of a segment nor the like explains as well.
+    pub rough: Vec<usize>,
     /// μ of each hole, as far as the run distinguishes it from the shared one; empty if the file has no friction with memory.
     pub mu: Vec<f64>,
 }
@@ -50,7 +60,14 @@ pub struct Machine {
 impl Machine {
     /// Returns empty findings.
     pub fn none(file: &ManipulatorFile) -> Self {
-        Self { named: Vec::new(), tables: file.tables().clone(), mu: Vec::new() }
+        Self {
+            named: Vec::new(),
+            tables: file.tables().clone(),
+            lines: vec![[0.0; 2]; file.tables().disk_count],
+            marker_lag_s: 0.0,
+            rough: Vec::new(),
+            mu: Vec::new(),
+        }
     }
 }
 
@@ -138,6 +155,7 @@ pub fn search(file: &ManipulatorFile, run: &Run, progress: &Progress) -> Option<
             entry.gain *= more;
         }
     }
+    (entries, now) = search.without_guesses(entries, now, &before)?;
     search.named(file, &entries, &before, &now)
 }
 
@@ -199,9 +217,12 @@ impl Search<'_> {
         let gram = self.joint.gram(&now.point, &now.jacobian, now.units);
         let count = self.count(&now.point);
         let (own_gain, _) = self.joint.linear(&now.point, &now.set, (&gram.0, &gram.1))?;
+        let cost = self.joint.cost(&now.point, &now.set, now.units);
         let promised = |candidate: &Candidate| {
             let set = self.joint.with(&now.set, *candidate);
             let (gain, _) = self.joint.linear(&now.point, &set, (&gram.0, &gram.1))?;
+            // A number that is free already costs less with a wider prior.
+            let gain = gain + cost - self.joint.cost(&now.point, &set, now.units);
             let score = gain - own_gain - self.joint.numbers(*candidate) * count.ln();
             (score > LEAST_EVIDENCE).then_some((*candidate, set, score))
         };
@@ -211,7 +232,7 @@ impl Search<'_> {
         let (named, others): (Vec<_>, Vec<_>) = ranking.into_iter().partition(|(candidate, ..)| candidate.is_named());
         let picked: Vec<(Candidate, Set, f64)> =
             named.into_iter().take(MOST_TRIALS).chain(others.into_iter().take(MOST_OTHER_TRIALS)).collect();
-        let cost = self.joint.cost(&now.point, &now.set, now.units);
+        let least_gain = self.own_error(now, PRACTICAL_RATIO);
         let trial = |(candidate, set, _): (Candidate, Set, f64)| {
             let fresh = candidate.frees(&self.joint.runs.given);
             let point = self.joint.fitted(&now.point, &set, &now.jacobian, &fresh, now.units)?;
@@ -219,7 +240,7 @@ impl Search<'_> {
             let gain = cost - self.joint.cost(&point, &set, now.units);
             let delta_bic = self.joint.numbers(candidate) * count.ln() - gain;
             let is_possible = candidate != Candidate::TipLoad || self.has_possible_tip(&point);
-            let is_enough = delta_bic < -LEAST_EVIDENCE && self.is_practical(&now.point, &point);
+            let is_enough = delta_bic < -LEAST_EVIDENCE && gain > least_gain;
             (is_possible && is_enough).then_some((candidate, point, set, delta_bic))
         };
         let trials: Vec<(Candidate, Point, Set, f64)> = picked.into_par_iter().filter_map(trial).collect();
@@ -243,15 +264,21 @@ impl Search<'_> {
                 trials.remove(place);
                 continue;
             }
-            let bound = trials.first()?.delta_bic + self.margin(now);
+            // The model's own error b changes the difference D of two costs by up to 2|b|√D.
+            let bound = trials.first()?.delta_bic + LEAST_EVIDENCE + 4.0 * self.own_error(now, MODEL_TENSION_RATIO);
             let others = || trials.iter().filter(|other| other.candidate != trial.candidate);
-            let alike = others().filter(|other| other.candidate.is_named() && other.delta_bic < bound);
+            let mut alike: Vec<Candidate> = Vec::new();
+            for other in others().filter(|other| other.candidate.is_named() && other.delta_bic < bound) {
+                if alike.iter().all(|one| one.kind() != other.candidate.kind()) {
+                    alike.push(other.candidate);
+                }
+            }
             let entry = Entry {
                 candidate: trial.candidate,
                 gain: trial.gain,
                 delta_bic: evidence(trial),
                 runner_up: others().next().map(|other| (other.candidate, evidence(other))),
-                alike: alike.map(|other| other.candidate).collect(),
+                alike,
             };
             return Some((entry, trials.swap_remove(place).at));
         }
@@ -348,15 +375,57 @@ impl Search<'_> {
         Some((entries, now))
     }
 
+    /// Removes names that are not clear, the last first, because the values of the others are only right without them.
+    fn without_guesses(&self, mut entries: Vec<Entry>, mut now: Place, before: &Place) -> Option<(Vec<Entry>, Place)> {
+        loop {
+            let errors = self.joint.errors(&now.point, &now.set, &now.jacobian)?;
+            let left = self.left(&now);
+            let is_guess = |entry: &Entry| entry.candidate.is_named() && !self.is_clear(entry, &now, &errors, left);
+            let Some(at) = entries.iter().rposition(is_guess) else { return Some((entries, now)) };
+            let guess = entries.remove(at).candidate;
+            // Their ratio is what counts, but for weight.
+            let is_twin = |entry: &&mut Entry| {
+                let pair = [entry.candidate, guess];
+                pair.contains(&Candidate::Stiffness) && pair.contains(&Candidate::TendonOffset)
+            };
+            if let Some(twin) = entries.iter_mut().find(is_twin).filter(|twin| !twin.alike.contains(&guess)) {
+                twin.alike.push(guess);
+            }
+            let others: Vec<Candidate> = entries.iter().map(|entry| entry.candidate).collect();
+            let fresh: Vec<Unknown> =
+                others.iter().flat_map(|candidate| candidate.frees(&self.joint.runs.given)).collect();
+            let set = self.set_of(&before.set, &others);
+            let point = self.joint.fitted(&now.point, &set, &now.jacobian, &fresh, now.units)?;
+            now = self.settled(point, set)?;
+        }
+    }
+
+    /// Returns the squares of a residual in units of the noise.
+    fn squares(&self, point: &Point, units: Units) -> f64 {
+        let sums = self.joint.sums(point);
+        sums.tension_n2 / units.tension_n.powi(2) + sums.marker_m2 / units.marker_m.powi(2)
+    }
+
+    /// Returns what is left of them above the noise.
+    fn left(&self, now: &Place) -> f64 {
+        (self.squares(&now.point, now.units) - self.count(&now.point)).max(0.0)
+    }
+
+    /// Whether a candidate accounts for more than is left, and the interval of one of its numbers excludes the stated value.
+    fn is_clear(&self, entry: &Entry, now: &Place, errors: &[StandardError], left: f64) -> bool {
+        let is_off = |unknown: Unknown| {
+            let place = self.joint.place(unknown);
+            let error = errors.iter().find(|error| Some(error.place) == place);
+            error.is_some_and(|error| self.joint.found(&now.point, unknown).abs() > HALF_INTERVAL * error.whole)
+        };
+        entry.gain > left && entry.candidate.frees(&self.joint.runs.given).into_iter().any(is_off)
+    }
+
     /// Returns the final names.
     fn named(&self, file: &ManipulatorFile, entries: &[Entry], before: &Place, now: &Place) -> Option<Machine> {
         let joint = &self.joint;
         let count = self.count(&now.point);
-        let squares = |point: &Point| {
-            let sums = joint.sums(point);
-            sums.tension_n2 / now.units.tension_n.powi(2) + sums.marker_m2 / now.units.marker_m.powi(2)
-        };
-        let left = (squares(&now.point) - count).max(0.0);
+        let left = self.left(now);
         // Wrong lines cause wrong shapes, and a rest above the noise may have any cause.
         let has_wrong_lines =
             entries.iter().any(|entry| matches!(entry.candidate, Candidate::AllLines | Candidate::Line(_)));
@@ -368,14 +437,19 @@ impl Search<'_> {
             let place = joint.place(unknown)?;
             errors.iter().find(|error| error.place == place).map(|error| error.whole)
         };
-        let is_clear = |entry: &&Entry| {
-            let unknowns = entry.candidate.frees(&joint.runs.given);
-            let mut off = unknowns.iter().map(|unknown| (joint.found(&now.point, *unknown), error(*unknown)));
-            entry.candidate.is_named()
-                && entry.gain > left
-                && off.any(|(distance, error)| error.is_some_and(|error| distance.abs() > HALF_INTERVAL * error))
+        let is_clear = |entry: &&Entry| self.is_clear(entry, now, &errors, left);
+        // Without markers a segment shows by friction alone, of the holes at both its ends. It must be as far off as a hole must be to be named.
+        let is_enough = |entry: &&Entry| match entry.candidate {
+            Candidate::SegmentStiffness(segment) if !joint.runs.has_markers() => {
+                let softness = (-joint.found(&now.point, Unknown::SegmentStiffness(segment))).exp();
+                (0.5 * (softness - 1.0)).abs() > OWN_RATIO
+            }
+            candidate => candidate.is_named(),
         };
-        let clear: Vec<&Entry> = entries.iter().filter(is_clear).collect();
+        let is_late = |entry: &&Entry| entry.candidate == Candidate::LateMarkers;
+        let marker_lag_s =
+            entries.iter().find(is_late).filter(is_clear).map_or(0.0, |_| joint.found(&now.point, Unknown::MarkerLag));
+        let clear: Vec<&Entry> = entries.iter().filter(is_clear).filter(is_enough).collect();
         let mut tables = file.tables().clone();
         for unknown in clear.iter().flat_map(|entry| entry.candidate.frees(&joint.runs.given)) {
             if unknown == Unknown::CommonShift
@@ -385,7 +459,7 @@ impl Search<'_> {
             }
             unknown.put(&mut tables, joint.found(&now.point, unknown));
         }
-        let gap = (squares(&before.point) - count).max(0.0).sqrt();
+        let gap = (self.squares(&before.point, now.units) - count).max(0.0).sqrt();
         let gap_closed = if gap > 0.0 { 1.0 - left.sqrt() / gap } else { 1.0 };
         let named = clear.iter().map(|entry| {
             let (parameters, standard_errors) = numbers(entry.candidate, file.tables(), &tables, &error);
@@ -396,9 +470,20 @@ impl Search<'_> {
                 delta_bic: entry.delta_bic,
                 gap_closed,
                 runner_up: entry.runner_up,
-                alike: entry.alike.clone(),
+                alike: if matches!(entry.candidate, Candidate::SegmentStiffness(_)) && !joint.runs.has_markers() {
+                    // Each of the holes at the ends of a segment can have the friction that goes with its bend.
+                    entry.alike.iter().copied().chain([Candidate::AllHoles]).collect()
+                } else {
+                    entry.alike.clone()
+                },
             }
         });
+        let is_bent = |candidate: &Candidate| matches!(candidate, Candidate::SegmentStiffness(_));
+        let rough =
+            entries.iter().filter(|entry| !entry.alike.iter().any(is_bent)).filter_map(|entry| match entry.candidate {
+                Candidate::Hole(hole) => Some(hole),
+                _ => None,
+            });
         let remembers =
             file.tables().tendon.mu == joint.runs.given.tendon.mu && file.tables().tendon.sigma_n_per_m.is_some();
         let mu = if remembers {
@@ -406,7 +491,8 @@ impl Search<'_> {
         } else {
             Vec::new()
         };
-        Some(Machine { named: named.collect(), tables, mu })
+        let lines = now.point.state.lines.clone();
+        Some(Machine { named: named.collect(), tables, lines, marker_lag_s, rough: rough.collect(), mu })
     }
 
     fn count(&self, point: &Point) -> f64 {
@@ -418,21 +504,26 @@ impl Search<'_> {
         self.joint.runs.given.tip.mass_kg + self.joint.found(point, Unknown::TipMass) >= 0.0
     }
 
-    /// Whether the residual decreases by more than a negligible amount, in tensions or in distances of the disks.
-    fn is_practical(&self, before: &Point, after: &Point) -> bool {
-        let [one, other] = [before, after].map(|point| self.joint.sums(point));
-        let tension_n2 = (one.tension_n2 - other.tension_n2) / one.tension_count.max(1.0);
-        let marker_m2 = 2.0 * (one.marker_m2 - other.marker_m2) / one.marker_count.max(1.0);
-        tension_n2 > (PRACTICAL_RATIO * self.joint.runs.greatest_tension_n).powi(2)
-            || marker_m2 > (PRACTICAL * self.joint.runs.model_marker_m).powi(2)
+    /// Returns what the model's own error makes of the cost if that of the tensions is this fraction of the greatest. A candidate that only stands for this
+    /// error gains no more.
+    fn own_error(&self, now: &Place, tension_ratio: f64) -> f64 {
+        let sums = self.joint.sums(&now.point);
+        let tension = tension_ratio * self.joint.runs.greatest_tension_n / now.units.tension_n;
+        let lag_s = self.joint.found(&now.point, Unknown::MarkerLag);
+        let slope = self
+            .joint
+            .place(Unknown::MarkerLag)
+            .filter(|_| lag_s != 0.0)
+            .and_then(|place| self.joint.slope(&now.point, place));
+        let path_m =
+            slope.unwrap_or_default().into_iter().filter(|one| one.is_finite()).map(|one| PATH_RATIO * lag_s * one);
+        let arcs_m2: f64 = self.joint.arc_error_m.iter().copied().chain(path_m).map(|off_m| off_m * off_m).sum();
+        sums.tension_count * tension * tension + arcs_m2 / now.units.marker_m.powi(2)
     }
 
     /// Returns the difference up to which two candidates explain a run equally: chance plus the model's own error.
     fn margin(&self, now: &Place) -> f64 {
-        let sums = self.joint.sums(&now.point);
-        let tension = MODEL_TENSION_RATIO * self.joint.runs.greatest_tension_n / now.units.tension_n;
-        let marker = self.joint.runs.model_marker_m / now.units.marker_m;
-        LEAST_EVIDENCE + sums.tension_count * tension * tension + sums.marker_count * marker * marker
+        LEAST_EVIDENCE + self.own_error(now, MODEL_TENSION_RATIO)
     }
 }
 

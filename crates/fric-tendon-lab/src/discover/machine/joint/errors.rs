@@ -4,7 +4,7 @@ use fric_lab::statistics::{Scores, inverse_of_normal};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Jacobian, Joint, Point, Set, Units, weighted};
-use crate::identify::errors::MODEL_TENSION_RATIO;
+use crate::identify::errors::{ALONG_RATIO, MODEL_TENSION_RATIO};
 
 /// Standard errors of a free number: with all contributions, and with white noise alone.
 #[derive(Clone, Copy, Debug)]
@@ -51,15 +51,12 @@ impl Joint<'_> {
         }
         let known = DMatrix::from_diagonal(&DVector::from_column_slice(&set.precision));
         let inverse = inverse_of_normal(&(&matrices[0] + &matrices[1] + &known))?;
-        let off = [
-            (sums.tension_count, MODEL_TENSION_RATIO * self.runs.greatest_tension_n / units.tension_n),
-            (sums.marker_count, self.runs.model_marker_m / units.marker_m),
-        ];
-        let mut systematic = DMatrix::zeros(count, count);
-        for (matrix, (count, off)) in matrices.iter().zip(off) {
-            systematic += matrix * (count * (0.5 * off).powi(2));
-        }
-        let systematic = &inverse * systematic * &inverse;
+        let off = MODEL_TENSION_RATIO * self.runs.greatest_tension_n / units.tension_n;
+        let of_tensions = &matrices[0] * (sums.tension_count * (ALONG_RATIO * off).powi(2));
+        let arc_error = weighted(&self.arc_error_m, &weights);
+        let pull = columns.iter().map(|column| column.iter().zip(&arc_error).map(|(slope, off)| slope * off).sum());
+        let of_shapes = &inverse * DVector::from_iterator(count, pull);
+        let systematic = &inverse * of_tensions * &inverse + &of_shapes * of_shapes.transpose();
         let in_blocks = scores.covariance(&inverse) + &inverse * known * &inverse;
         let error = |(at, place): (usize, &usize)| {
             let ratio: f64 = in_blocks[(at, at)] / inverse[(at, at)];

@@ -9,14 +9,17 @@ mod fit;
 
 use std::sync::Arc;
 
+pub use self::errors::StandardError;
+
 use fric_lab::fit::Progress;
 use fric_lab::statistics::white_noise_throughout;
 use fric_tendon::file::{ManipulatorFile, OneOrEach, USUAL_SIGMA_N_PER_M};
 use rayon::prelude::*;
 
 use crate::discover::machine::candidate::Candidate;
+use crate::identify::arc_error::arc_error_m;
 use crate::identify::errors::MODEL_TENSION_RATIO;
-use crate::identify::evaluation::{Evaluation, Runs, State};
+use crate::identify::evaluation::{Evaluation, Row, Runs, State};
 use crate::identify::unknown::Unknown;
 use crate::run::Run;
 
@@ -41,6 +44,8 @@ pub struct Joint<'a> {
     /// Numbers of all candidates and of the friction. The lines follow, two numbers per grating.
     unknowns: Vec<Unknown>,
     line_count: usize,
+    /// Error of the file's shapes at each residual, m; 0 at tensions.
+    pub arc_error_m: Vec<f64>,
 }
 
 /// Scales of the signals.
@@ -106,8 +111,16 @@ impl<'a> Joint<'a> {
                 unknowns.push(unknown);
             }
         }
-        let line_count = runs.start(&[]).lines.len();
-        Some(Self { runs, unknowns, line_count })
+        let start = runs.start(&[]);
+        let evaluation = runs.evaluate(&start, None)?;
+        let of_shapes = arc_error_m(&evaluation);
+        let rows = evaluation.runs.iter().flat_map(|run| &run.rows).zip(of_shapes.iter().flatten());
+        let each = |(row, off_m): (&Row, &Vec<f64>)| {
+            let zeros = std::iter::repeat_n(0.0, row.tension_n.len());
+            zeros.chain(off_m.iter().copied().take(row.marker_m.len())).collect::<Vec<f64>>()
+        };
+        let arc_error_m = rows.flat_map(each).collect();
+        Some(Self { runs, unknowns, line_count: start.lines.len(), arc_error_m })
     }
 
     /// Returns the state of the file as it is.
