@@ -66,8 +66,9 @@ fn late_markers_are_told_and_what_is_wrong_beside_them() {
         let discovery = found(&text, &samples);
         assert_eq!(told_but_holes(&discovery), ("unexplained", Vec::new()), "{experiment:?} {count}");
         let (found, words) = faults(&discovery);
-        assert_eq!(found[0].0, "reference_delay", "{words}");
-        assert!((found[0].1[0] / delay_s - 1.0).abs() < 0.1, "{experiment:?} {count}: {words}");
+        // The first place, which is held that long, may be reported as frozen too.
+        let delay = found.iter().find(|(with, _)| *with == "reference_delay").unwrap();
+        assert!((delay.1[0] / delay_s - 1.0).abs() < 0.1, "{experiment:?} {count}: {words}");
     }
     let soft = PROTOTYPE.replace("youngs_modulus_pa = 200e9", "youngs_modulus_pa = 180e9");
     let options =
@@ -76,7 +77,7 @@ fn late_markers_are_told_and_what_is_wrong_beside_them() {
     late(&mut samples, 3);
     let discovery = found(&text, &samples);
     assert_eq!(told_but_holes(&discovery), ("unexplained", vec!["backbone_stiffness"]));
-    assert!((faults(&discovery).0[0].1[0] / 0.3 - 1.0).abs() < 0.1);
+    assert!((faults(&discovery).0.last().unwrap().1[0] / 0.3 - 1.0).abs() < 0.1);
     let ratio = discovery.result.cables[0].effects[0].parameters.get("stiffness_ratio").unwrap();
     assert!((ratio / 0.9 - 1.0).abs() < 0.01, "{ratio}");
 }
