@@ -77,7 +77,7 @@ fn bad_runs_get_their_sentence() {
     };
     assert_eq!(with(0, 3, 0.2), "time goes from 0.2 s to 0.2 s at sample 4");
     assert!(with(0, 3, f64::NAN).starts_with("`time_s` of sample 4 is NaN"));
-    assert!(with(1, 3, f64::NAN).starts_with("`tension_base_n` is NaN at 0.3 s (sample 4); "));
+    assert!(with(1, 3, f64::NAN).starts_with("`tension_base_n` is NaN at 0.3 s (sample 4); it must"));
     assert!(with(1, 3, -0.1).starts_with("`tension_base_n` is -0.1 at "));
     assert!(with(1, 3, f64::INFINITY).starts_with("`tension_base_n` is inf at "));
     let renamed = |from: &str, to: &str| {
@@ -228,11 +228,11 @@ fn load_benches_are_read() {
     assert!((read[2].load_n - 1.96133).abs() < 1e-12 && read[2].shift_nm == [0.2; 8]);
     steps[0].0 = "load_n".to_owned();
     let in_grams = load_steps(&steps).unwrap_err().to_string();
-    assert!(in_grams.starts_with("`load_n` goes up to 200 N, above the tendon's capacity of 4 N: it is likely in g; "));
+    assert!(in_grams.starts_with("`load_n` goes up to 200 N, above the tendon's capacity of 4 N: it is likely in g"));
     steps[0].1 = vec![0.2, 1.0, 2.0];
     assert!((load_steps(&steps).unwrap()[2].load_n - 2.0).abs() < 1e-12);
     steps[0].1[1] = f64::NAN;
-    assert!(load_steps(&steps).unwrap_err().to_string().starts_with("`load_n` is NaN in row 2; "));
+    assert!(load_steps(&steps).unwrap_err().to_string().starts_with("`load_n` is NaN in row 2"));
     steps.remove(0);
     assert!(load_steps(&steps).unwrap_err().to_string().starts_with("column `load_g` is missing"));
 

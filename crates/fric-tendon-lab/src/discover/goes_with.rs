@@ -15,8 +15,8 @@ const LEAST_SHARE: f64 = 0.5;
 /// Relative change of the stiffness for its derivative by finite differences.
 const STIFFNESS_CHANGE: f64 = 0.01;
 /// Temperature sensitivity of a silica grating, `α_Λ + α_n`, 1/K, and the C-band wavelength, nm, which is used if the file states none.
-const SILICA_PER_K: f64 = 6.85e-6;
-const USUAL_WAVELENGTH_NM: f64 = 1550.0;
+pub const SILICA_PER_K: f64 = 6.85e-6;
+pub const USUAL_WAVELENGTH_NM: f64 = 1550.0;
 
 /// A regressor that a rest correlates with.
 #[derive(Clone, Debug, Serialize)]

@@ -14,7 +14,9 @@ fn faults(discovery: &TendonDiscovery) -> (Vec<(&'static str, Vec<f64>)>, String
 }
 
 fn exchanged(samples: &mut [RunSample], [one, other]: [usize; 2]) {
-    samples.iter_mut().for_each(|sample| sample.marker_m.swap(one, other));
+    for sample in samples.iter_mut() {
+        sample.marker_m.swap(one, other);
+    }
 }
 
 /// Moves all markers some samples behind.

@@ -46,7 +46,9 @@ fn without_markers_a_soft_segment_and_rough_holes_are_both_told() {
             &format!("youngs_modulus_pa = 200e9\nsegment_stiffness_ratio = {ratio:?}"),
         );
         let (text, mut samples) = measured_of(&truth, &options(experiment, 52));
-        samples.iter_mut().for_each(|sample| sample.marker_m.clear());
+        for sample in &mut samples {
+            sample.marker_m.clear();
+        }
         let discovery = found(&text, &samples);
         assert_eq!(told(&discovery).0, "extended");
         let named = named(&discovery);
@@ -64,7 +66,9 @@ fn without_markers_a_rough_hole_between_others_is_a_hole() {
     mu[3] = 0.35;
     for experiment in [Experiment::OneWay, Experiment::Mixed] {
         let (text, mut samples) = measured(experiment, 53, &mu);
-        samples.iter_mut().for_each(|sample| sample.marker_m.clear());
+        for sample in &mut samples {
+            sample.marker_m.clear();
+        }
         let discovery = found(&text, &samples);
         assert_eq!(named(&discovery), [["hole_friction"]], "{experiment:?}");
         assert_eq!(discovery.result.cables[0].effects[0].parameters.get("hole"), Some(4.0));
