@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use fric_core::robot::file::RobotFile;
 use fric_lab::simulate::{Simulation, SimulationError};
+use miette::Diagnostic as _;
 
 use super::robots::{noiseless, simulate};
 
@@ -157,7 +158,7 @@ fn a_platform_inside_its_pulleys_has_no_place_to_run() {
         friction = { mu = 0.02 }\n";
     let error = Simulation::new(&RobotFile::parse(text, "wrong").unwrap(), &noiseless()).unwrap_err();
     assert_eq!(error, SimulationError::NoWorkspace);
-    assert!(error.to_string().contains("unit m"));
+    assert!(error.help().is_some_and(|advice| advice.to_string().contains("unit m")));
 }
 
 #[test]
