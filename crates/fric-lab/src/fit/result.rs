@@ -16,7 +16,7 @@ use crate::discover::result::FaultResult;
 use crate::errors::{ForceError, WrenchError, WrenchResult};
 use crate::replay::WrenchReference;
 use crate::search::optimizer::Termination;
-use crate::search::solve::{OpenCombination, OpenPart};
+use crate::search::solve::{CONTRADICTION_RATIO, OpenCombination, OpenPart};
 use crate::search::vector::Parameter;
 use crate::set_up;
 use crate::text::listed;
@@ -289,10 +289,12 @@ impl FitResult {
             return Err(FitError::new(format!("no sample can be used: {cause}"), advice));
         }
         let of_logs = |cable: &FitCableResult| cable.per_log.iter().any(|log| !log.standard_errors.0.is_empty());
-        // A value at the bound where it does nothing is a finding: a cable without friction.
+        // A value at the bound where it does nothing is a finding, a cable without friction, unless it agrees with the samples less than no model.
         let is_none = |cable: &FitCableResult, key: &String| {
             let value = cable.parameters.get(key);
-            Parameter::named(key).is_some_and(|of| value == Some(of.row().neutral))
+            let squares = |error: Option<ForceError>| error.map_or(0.0, |error| error.rms_n.powi(2));
+            let is_worse = squares(cable.after) > (1.0 + CONTRADICTION_RATIO) * squares(cable.before);
+            !is_worse && Parameter::named(key).is_some_and(|of| value == Some(of.row().neutral))
         };
         let is_fitted = |cable: &FitCableResult| {
             let determined = !cable.standard_errors.0.is_empty() || of_logs(cable);
