@@ -136,7 +136,7 @@ def test_a_printed_fit_is_what_lmfit_s_users_expect(folder):
         reference_force_n=10.5 + noise_n[1],
     )
     left_open = fric.fit(robot, even)
-    assert "mu" in left_open.cables[0].undetermined
+    assert "offset_n" in left_open.cables[0].undetermined
     kept = re.findall(r"^    (\S+): .*not determined by the samples", str(left_open), re.MULTILINE)
     assert sorted(kept) == sorted(left_open.cables[0].undetermined) and "    open: together " in str(left_open)
 
