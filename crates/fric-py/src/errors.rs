@@ -127,36 +127,22 @@ impl From<AsSliceError> for Fault {
     }
 }
 
-macro_rules! fault_with_advice_from {
-    ($($error:ty => $kind:ident),* $(,)?) => {$(
-        impl From<$error> for Fault {
-            fn from(error: $error) -> Self {
-                Self::$kind(with_advice(&error))
-            }
-        }
-    )*};
-}
-
-fault_with_advice_from!(
-    SimulationError => config,
-    ExcitationError => config,
-    SignalError => log,
-);
-
 macro_rules! fault_from {
-    ($($error:ty => $kind:ident),* $(,)?) => {$(
+    ($text:ident: $($error:ty => $kind:ident),* $(,)?) => {$(
         impl From<$error> for Fault {
             fn from(error: $error) -> Self {
-                Self::$kind(in_full(&error))
+                Self::$kind($text(&error))
             }
         }
     )*};
 }
 
+fault_from!(with_advice: ExcitationError => config, SignalError => log, SimulationError => config);
 fault_from!(
-    ParamError => config,
-    ManipulatorError => config,
+    in_full:
     HiddenError => config,
+    ManipulatorError => config,
+    ParamError => config,
     SignalPathError => config,
     SnapshotMismatch => shape,
     StateMismatch => shape,
