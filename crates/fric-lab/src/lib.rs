@@ -56,7 +56,9 @@ pub mod excite;
 pub mod fit;
 pub mod hysteresis;
 mod lateness;
+pub mod numbers;
 pub mod random;
+pub mod recording_fault;
 pub mod replay;
 mod samples;
 mod search;
@@ -66,5 +68,6 @@ pub mod statistics;
 pub mod text;
 pub mod trajectory;
 mod weight;
+pub mod words;
 
 pub use axis::CartesianAxis;

@@ -1,8 +1,8 @@
 //! `discover`: the missing effect, as the command line and Python find it.
 
 use fric_lab::discover::result::DiscoverResult;
-use fric_lab::discover::{DiscoverOptions, Discoveries};
-use fric_lab::fit::{Reference, readiness};
+use fric_lab::discover::{DiscoverOptions, Discoveries, readiness};
+use fric_lab::fit::Reference;
 
 use crate::runs::Runs;
 use crate::supervisor::Supervisor;
@@ -19,8 +19,8 @@ pub fn run<W: Supervisor>(
 ) -> Result<(DiscoverResult, Discoveries), W::Error> {
     let Runs { robot, origin, names, samples, holdings, .. } = runs;
     let (readiness, steps) = match samples.reference() {
-        Reference::Forces => (readiness::to_discover(robot, holdings), "stages"),
-        Reference::Wrench => (readiness::to_discover_by_wrench(robot, origin, holdings), "searches"),
+        Reference::Forces => (readiness::by_forces(robot, holdings), "stages"),
+        Reference::Wrench => (readiness::by_wrench(robot, origin, holdings), "searches"),
     };
     // Missing data of some cables are reported only beside their verdicts.
     runs.check::<W>(&readiness)?;

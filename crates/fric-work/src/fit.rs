@@ -1,9 +1,10 @@
 //! `fit`: the parameters of the friction model, as the command line and Python identify them.
 
 use fric_core::robot::file::RobotFileError;
-use fric_lab::discover::{CorrectedFit, RecordingFault, fit_cables_corrected};
+use fric_lab::discover::{CorrectedFit, fit_cables_corrected};
 use fric_lab::fit::result::{FitResult, Fits};
 use fric_lab::fit::{self, FitOptions, Reference, fit_wrench, readiness, rewritten};
+use fric_lab::recording_fault::RecordingFault;
 
 use crate::runs::Runs;
 use crate::supervisor::Supervisor;

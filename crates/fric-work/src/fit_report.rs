@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
-use fric_lab::discover::words::Times;
 use fric_lab::errors::ForceError;
 use fric_lab::fit::CableFit;
 use fric_lab::fit::result::{FitCableResult, FitResult};
 use fric_lab::text::{digits_of, number, plain, significant, wrapped};
+use fric_lab::words::Times;
 
 use crate::report::fit::remark;
 use crate::verdict::of_fit;

@@ -10,6 +10,7 @@ use std::fmt::Write as _;
 
 use fric_core::robot::file::FROM_LENGTHS;
 use fric_core::text_file::printable;
+use fric_lab::discover;
 use fric_lab::fit::readiness::{self, Holdings, Readiness};
 use fric_lab::text::{table, table_with_text};
 use fric_log::log::Log;
@@ -313,8 +314,8 @@ fn steps(model: &Model, holdings: &Holdings, problem: Option<&str>) -> Vec<StepR
         step("replay: errors", has_rows && holdings.has_reference(), errors),
         fit("fit: forces", readiness::by_forces(&model.robot, holdings)),
         fit("fit: wrench", readiness::by_wrench(&model.robot, &model.origin, holdings)),
-        fit("discover: forces", readiness::to_discover(&model.robot, holdings)),
-        fit("discover: wrench", readiness::to_discover_by_wrench(&model.robot, &model.origin, holdings)),
+        fit("discover: forces", discover::readiness::by_forces(&model.robot, holdings)),
+        fit("discover: wrench", discover::readiness::by_wrench(&model.robot, &model.origin, holdings)),
     ]
 }
 

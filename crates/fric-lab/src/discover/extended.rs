@@ -3,11 +3,10 @@
 use fric_core::parameters::Values;
 use fric_core::robot::file::{RobotFile, RobotFileError};
 
-use super::faults::length_noise::with_play;
 use super::report::CableDiscovery;
 use super::rest::empirical::is_idle;
 use crate::fit::Parameter;
-use crate::fit::rewritten::{NewValues, with_values};
+use crate::fit::rewritten::{NewValues, with_play, with_values};
 
 /// Returns the text of a robot file with the extended models of its cables, in the robot's order. It contains the fitted values, every parameter of
 /// each effect that was found, values that the log contradicts without determining others, and the monitor's `length_noise_m` where the

@@ -6,14 +6,14 @@ use fric_core::effects::Effect;
 use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
-use super::faults::RecordingFault;
 use super::figures::curve::FrictionCurves;
 use super::figures::profile::Profile;
+use super::lack::Lack;
 use super::naming::Refusal;
-use super::readiness::Lack;
 use super::rest::neighbours::Neighbour;
 use super::rest::places::Place;
 use crate::fit::{CableRecord, LogValue, Parameter, SampleCounts};
+use crate::recording_fault::RecordingFault;
 use crate::replay::Deviation;
 use crate::set_up::SetUp;
 

@@ -2,9 +2,9 @@
 
 use super::Verdict;
 use super::result::{DiscoverCableResult, DiscoverResult, EffectResult, WhereResult, WrenchComponent, WrenchGap};
-use super::words::Times;
 use crate::fit::summary::log_table;
 use crate::text::{listed, table, wrapped};
+use crate::words::{Times, percent};
 
 /// Width of the label column, in characters.
 const LABEL: usize = 11;
@@ -48,7 +48,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
         text += "\n";
         text += &wrapped("", &format!("{}: {}", listed(&quiet), first.verdict_in_words(is_beside_rest)));
     }
-    let (mut told, times) = (Vec::new(), Times::of(result));
+    let (mut told, times) = (Vec::new(), result.times());
     for cable in result.cables.iter().filter(|cable| !is_quiet(cable)) {
         text += "\n";
         text += &wrapped("", &format!("{}: {}", cable.name, cable.verdict_in_words(is_beside_rest)));
@@ -81,7 +81,7 @@ fn overview(result: &DiscoverResult) -> String {
             number(cable.noise_floor_n),
             number(cable.before.map(|error| error.rms_n)),
             number(cable.after.map(|error| error.rms_n)),
-            closed.map_or_else(|| "–".to_owned(), super::words::percent),
+            closed.map_or_else(|| "–".to_owned(), percent),
         ]
     };
     let rows: Vec<_> = result.cables.iter().map(row).collect();

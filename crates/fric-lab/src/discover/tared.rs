@@ -5,7 +5,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::cable::given_to;
+use super::given::given_to;
 use super::workbench::Workbench;
 use crate::fit::{CableRecord, LogZero};
 use crate::samples::cable::Zeroed;

@@ -5,7 +5,6 @@ use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile};
 
 use super::balance::{ONE_LINE, ONE_LINE_ADVICE};
 use super::error::FitError;
-use crate::discover::readiness::too_short;
 use crate::samples::record::Reference;
 
 /// What a force sensor of the other sign shows, and what to do.
@@ -146,14 +145,14 @@ impl Holdings {
 
     /// Returns how long a cable has a reference, estimated from the mean row interval, s.
     #[expect(clippy::cast_precision_loss, reason = "counts of rows")]
-    fn referenced_s(&self, cable: usize) -> f64 {
+    pub(crate) fn referenced_s(&self, cable: usize) -> f64 {
         let referenced = self.cables.get(cable).map_or(0, |of| of.referenced);
         referenced as f64 * self.intervals_s / self.intervals.max(1) as f64
     }
 
     /// Returns how long the log has a pose, and the external wrench if it is measured at all, estimated from the mean row interval, s.
     #[expect(clippy::cast_precision_loss, reason = "counts of rows")]
-    fn balanced_s(&self) -> f64 {
+    pub(crate) fn balanced_s(&self) -> f64 {
         let rows = if self.wrenched > 0 { self.posed.min(self.wrenched) } else { self.posed };
         rows as f64 * self.intervals_s / self.intervals.max(1) as f64
     }
@@ -197,6 +196,11 @@ impl Readiness {
     #[must_use]
     pub fn is_possible(&self) -> bool {
         (0..self.cable_count).any(|cable| !self.is_lacking(cable))
+    }
+
+    /// Adds something that is missing for cables.
+    pub(crate) fn add(&mut self, cause: String, advice: &'static str, cables: Vec<usize>) {
+        self.lacks.push(Lack { cause, advice, instead: None, cables });
     }
 
     /// Whether something is missing for a cable.
@@ -268,36 +272,8 @@ pub fn by_forces(robot: &RobotFile, holdings: &Holdings) -> Readiness {
     of_forces(robot, holdings, advice)
 }
 
-/// Returns what is missing for a discovery by the forces at the platform.
-#[must_use]
-pub fn to_discover(robot: &RobotFile, holdings: &Holdings) -> Readiness {
-    let advice = "Name their topic as `reference` under `[log]` in the robot file, or search without them";
-    let mut readiness = of_forces(robot, holdings, advice);
-    let is_short = |cable: &usize| too_short(holdings.referenced_s(*cable)).is_some();
-    let cables: Vec<usize> =
-        (0..readiness.cable_count).filter(|cable| !readiness.is_lacking(*cable)).filter(is_short).collect();
-    // Of several cables, the one with the longest record is reported.
-    let most_s = cables.iter().map(|cable| holdings.referenced_s(*cable)).fold(0.0, f64::max);
-    if let Some(lack) = too_short(most_s).filter(|_| !cables.is_empty()) {
-        let cause = lack.cause + &of(&robot.cable_names(), &cables);
-        readiness.lacks.push(Lack { cause, advice: lack.advice, instead: None, cables });
-    }
-    readiness
-}
-
-/// Returns what is missing for a discovery by the wrench on the platform. `origin` names the source of the robot file.
-#[must_use]
-pub fn to_discover_by_wrench(robot: &RobotFile, origin: &str, holdings: &Holdings) -> Readiness {
-    let mut readiness = by_wrench(robot, origin, holdings);
-    if let Some(lack) = too_short(holdings.balanced_s()).filter(|_| readiness.is_possible()) {
-        let cables = (0..readiness.cable_count).collect();
-        readiness.lacks.push(Lack { cause: lack.cause, advice: lack.advice, instead: None, cables });
-    }
-    readiness
-}
-
 /// Returns what is missing to compare each cable with its force at the platform. `advice` is for a robot that can do without these forces.
-fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Readiness {
+pub(crate) fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Readiness {
     let log = &robot.options().log;
     let (names, params) = (robot.cable_names(), robot.params());
     let mut readiness = Readiness { lacks: silent(&names, holdings), cable_count: names.len() };
@@ -313,7 +289,7 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Re
             None if can_balance => (advice, Some(Reference::Wrench)),
             None => (SENSOR_ADVICE, None),
         };
-        readiness.lacks.push(Lack { cause: cause + &of(&names, &cables), advice, instead, cables });
+        readiness.lacks.push(Lack { cause: cause + &of_cables(&names, &cables), advice, instead, cables });
     }
     let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|of| !of.moved));
     if !cables.is_empty() {
@@ -326,7 +302,7 @@ fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static str) -> Re
     if !cables.is_empty() {
         let (cause, advice) = without_pose(log, holdings.has_columns);
         readiness.lacks.push(Lack {
-            cause: format!("{cause}, and so no wrap of the last pulley{}", of(&names, &cables)),
+            cause: format!("{cause}, and so no wrap of the last pulley{}", of_cables(&names, &cables)),
             advice,
             instead: None,
             cables,
@@ -454,7 +430,7 @@ fn silent(names: &[&str], holdings: &Holdings) -> Vec<Lack> {
 }
 
 /// Returns the names of the cables, unless it is all of them.
-fn of(names: &[&str], cables: &[usize]) -> String {
+pub(crate) fn of_cables(names: &[&str], cables: &[usize]) -> String {
     if cables.len() == names.len() {
         return String::new();
     }

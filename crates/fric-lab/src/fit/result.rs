@@ -4,16 +4,15 @@ use std::collections::BTreeSet;
 
 use fric_core::parameters::NO_PRESLIDING_N_PER_M;
 use fric_core::robot::file::RobotFile;
-use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
 
 use super::error::FitError;
 use super::readiness::Readiness;
 use super::report::{CableFit, LogValue, WrenchFit};
 use super::summary;
-use crate::discover::RecordingFault;
-use crate::discover::result::FaultResult;
 use crate::errors::{ForceError, WrenchError, WrenchResult};
+use crate::numbers::Numbers;
+use crate::recording_fault::{FaultResult, RecordingFault};
 use crate::replay::WrenchReference;
 use crate::search::optimizer::Termination;
 use crate::search::solve::{CONTRADICTION_RATIO, OpenCombination, OpenPart};
@@ -206,28 +205,6 @@ pub struct LeftOut {
     pub warm_up: usize,
     /// Outliers.
     pub outliers: usize,
-}
-
-/// Numbers by name, in order.
-#[derive(Clone, Debug, Default)]
-pub struct Numbers(pub Vec<(String, f64)>);
-
-impl Numbers {
-    /// Returns the number of a name.
-    #[must_use]
-    pub fn get(&self, name: &str) -> Option<f64> {
-        self.0.iter().find(|(of, _)| of == name).map(|(_, value)| *value)
-    }
-}
-
-impl Serialize for Numbers {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, value) in &self.0 {
-            map.serialize_entry(name, value)?;
-        }
-        map.end()
-    }
 }
 
 impl FitResult {

@@ -3,12 +3,11 @@
 use fric_core::CableParams;
 use fric_core::effects::Effect;
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
-use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite};
+use fric_core::robot::edit::{CableEdit, EffectEdit, FrictionEdit, rewrite, set_monitor};
 use fric_core::robot::file::{RobotFile, RobotFileError};
 
 use super::report::CableFit;
-use crate::discover::RecordingFault;
-use crate::discover::faults::length_noise::with_play;
+use crate::recording_fault::{Fault, LENGTH_NOISE_M, RecordingFault};
 use crate::search::vector::Parameter;
 
 /// Returns the text of a robot file with the fitted values of its cables, in the robot's order, and the monitor's `length_noise_m` where the `faults` of
@@ -35,6 +34,24 @@ pub fn rewritten(
     let parameters: Vec<Vec<Parameter>> = fits.iter().zip(robot.params().cables()).map(new).collect();
     let new = fits.iter().zip(parameters).map(|(fit, parameters)| NewValues { values: &fit.values, parameters });
     with_play(with_values(text, origin, &new.collect::<Vec<_>>())?, origin, faults.iter().flatten())
+}
+
+/// Writes the play into the text of a robot file where lengths are noisy.
+///
+/// # Errors
+/// Returns the [`RobotFileError`] of [`set_monitor`].
+pub fn with_play<'a>(
+    text: String,
+    origin: &str,
+    mut faults: impl Iterator<Item = &'a RecordingFault>,
+) -> Result<String, RobotFileError> {
+    let play_m = faults
+        .find(|fault| fault.fault == Fault::NoisyLength)
+        .and_then(|fault| fault.parameters.iter().find(|(key, _)| *key == LENGTH_NOISE_M).map(|(_, value)| *value));
+    match play_m {
+        Some(play_m) => set_monitor(&text, origin, LENGTH_NOISE_M, play_m),
+        None => Ok(text),
+    }
 }
 
 /// The new values of a cable.

@@ -3,8 +3,9 @@
 use fric_core::effects::Effect;
 use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
-use super::result::{FitCableResult, FitReference, FitResult, LogValues, Numbers, OpenPartResult, OpenResult};
-use crate::discover::words::recording_lines;
+use super::result::{FitCableResult, FitReference, FitResult, LogValues, OpenPartResult, OpenResult};
+use crate::numbers::Numbers;
+use crate::recording_fault::recording_lines;
 use crate::search::vector::Parameter;
 use crate::text::{digits_of, number, plain, significant, table, wrapped};
 

@@ -3,8 +3,9 @@
 use fric_core::effects::Effect;
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Pose, Sample};
-use fric_lab::discover::{CableDiscovery, DiscoverOptions, Fault, Verdict, discover, extended};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_lab::recording_fault::Fault;
 use fric_lab::simulate::sweep::{Case, CaseTruth, Group};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

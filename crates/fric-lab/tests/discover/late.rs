@@ -6,8 +6,9 @@ use fric_core::effects::Effect;
 use fric_core::robot::RobotParams;
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Sample};
-use fric_lab::discover::{DiscoverOptions, Fault, Finding, Refusal, RunnerUp, Verdict, discover};
+use fric_lab::discover::{DiscoverOptions, Finding, Refusal, RunnerUp, Verdict, discover};
 use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_lab::recording_fault::Fault;
 use fric_lab::simulate::sweep::{Case, Group};
 use fric_lab::simulate::{Simulation, SimulationOptions};
 

@@ -16,8 +16,9 @@ mod wrench;
 use fric_core::effects::Effect;
 use fric_core::parameters::VISCOUS;
 use fric_core::robot::file::{FrictionTable, RobotFile};
-use fric_lab::discover::{CableDiscovery, DiscoverOptions, Fault, Verdict, discover, extended};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, Verdict, discover, extended};
 use fric_lab::fit::{Measurements, Progress, Reference};
+use fric_lab::recording_fault::Fault;
 use fric_lab::simulate::sweep::{Case, CaseLog, CaseTruth, Group};
 use fric_lab::simulate::{HiddenEffect, Simulation, SimulationOptions};
 

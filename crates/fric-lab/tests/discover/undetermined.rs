@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 
 use fric_core::robot::file::RobotFile;
 use fric_core::{AnyCompensator, CableInput, Sample};
+use fric_lab::discover::readiness::by_forces;
 use fric_lab::discover::result::DiscoverResult;
 use fric_lab::discover::{CableDiscovery, DiscoverOptions, discover, extended};
-use fric_lab::fit::readiness::{Holdings, to_discover};
+use fric_lab::fit::readiness::Holdings;
 use fric_lab::fit::{Measurements, Progress, Reference};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -92,7 +93,7 @@ fn the_file_is_the_model_that_was_judged() {
         // Nothing is left but the noise of the sensor.
         assert!(judged_n < 1.1 * NOISE_N, "{sigma_n_per_m}: {judged_n} N");
 
-        let readiness = to_discover(&robot, &Holdings::new(1));
+        let readiness = by_forces(&robot, &Holdings::new(1));
         let result = DiscoverResult::new(&robot, &[("log".to_owned(), 0.0)], &readiness, &found);
         let cable = &result.cables[0];
         let expected: &[&str] = if is_contradicted { &["sigma_n_per_m"] } else { &[] };

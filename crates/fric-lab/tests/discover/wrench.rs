@@ -6,8 +6,9 @@
 use fric_core::Wrench;
 use fric_core::effects::Effect;
 use fric_core::robot::file::RobotFile;
-use fric_lab::discover::{Fault, Geometry, Verdict, WrenchDiscovery, discover_wrench};
+use fric_lab::discover::{Geometry, Verdict, WrenchDiscovery, discover_wrench};
 use fric_lab::fit::{Progress, Reference};
+use fric_lab::recording_fault::Fault;
 use fric_lab::simulate::SimulationOptions;
 
 use crate::fit::logs::Log;

@@ -5,7 +5,7 @@ use fric_lab::discover::result::{
     Absent, DiscoverCableResult, DiscoverResult, EffectResult, Evidence, RunnerUpResult, TriedResult, UnexplainedResult,
 };
 use fric_lab::errors::ForceError;
-use fric_lab::fit::result::Numbers;
+use fric_lab::numbers::Numbers;
 use fric_tendon::file::USUAL_SIGMA_N_PER_M;
 
 use super::TendonDiscovery;

@@ -3,7 +3,7 @@
 //! The regressor is not a name but a hint: a temperature change shifts all gratings equally, and a backbone that is stiffer than stated displaces all
 //! disks along their bending motion.
 
-use fric_lab::fit::result::Numbers;
+use fric_lab::numbers::Numbers;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 

@@ -3,7 +3,7 @@
 //! Markers that stand still or are exchanged are found in the run alone, and put right before the search: hidden, or exchanged back. A delay is found by
 //! the search. Such a run is never called complete or extended: it needs another recording, and the report says what is wrong with this one.
 
-use fric_lab::fit::result::Numbers;
+use fric_lab::numbers::Numbers;
 use fric_lab::text::listed;
 use fric_tendon::ManipulatorParams;
 use fric_tendon::file::ManipulatorFile;

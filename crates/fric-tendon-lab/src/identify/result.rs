@@ -1,6 +1,6 @@
 //! The result of an identification: `fric-continuum-fit/1`.
 
-use fric_lab::fit::result::Numbers;
+use fric_lab::numbers::Numbers;
 use fric_tendon::file::ManipulatorTables;
 use serde::Serialize;
 

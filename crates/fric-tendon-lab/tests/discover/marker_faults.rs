@@ -9,7 +9,7 @@ use super::{PROTOTYPE, found, measured, measured_of, told_but_holes};
 /// Names of the faults with their numbers, and the report in words.
 fn faults(discovery: &TendonDiscovery) -> (Vec<(&'static str, Vec<f64>)>, String) {
     let rest = discovery.result.cables[0].unexplained.as_ref().unwrap();
-    let numbers = |numbers: &fric_lab::fit::result::Numbers| numbers.0.iter().map(|(_, value)| *value).collect();
+    let numbers = |numbers: &fric_lab::numbers::Numbers| numbers.0.iter().map(|(_, value)| *value).collect();
     (rest.goes_with.iter().map(|one| (one.with, numbers(&one.parameters))).collect(), rest_in_words(rest))
 }
 

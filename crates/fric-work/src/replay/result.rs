@@ -2,9 +2,8 @@
 
 use fric_core::robot::file::{FROM_LENGTHS, RobotFile};
 use fric_lab::discover::Corrections;
-use fric_lab::discover::result::FaultResult;
-use fric_lab::discover::words::recording_lines;
 use fric_lab::errors::{ForceError, WrenchResult};
+use fric_lab::recording_fault::{FaultResult, recording_lines};
 use fric_lab::replay::{CableErrors, Replay};
 use fric_lab::text::{duration, table, wrapped};
 use fric_log::signals::LengthPoses;

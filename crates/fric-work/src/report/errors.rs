@@ -1,8 +1,8 @@
 //! The page of `replay --report`: errors as tables and over time, friction over its conditions, forces and wrench.
 
-use fric_lab::discover::words::Times;
 use fric_lab::errors::{WrenchError, WrenchResult};
 use fric_lab::text::duration;
+use fric_lab::words::Times;
 use maud::{Markup, html};
 
 use super::friction::{CableFriction, Friction};

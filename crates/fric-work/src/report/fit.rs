@@ -1,8 +1,8 @@
 //! The page of a fit: values with their errors, correlations, and the remaining gap to the reference.
 
-use fric_lab::discover::words::Times;
 use fric_lab::fit::result::{FitCableResult, FitResult, LogValues};
 use fric_lab::text::plain;
+use fric_lab::words::Times;
 use maud::{Markup, html};
 
 use super::errors::wrench_table;

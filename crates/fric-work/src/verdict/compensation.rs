@@ -377,7 +377,8 @@ pub fn of_hysteresis(result: &HysteresisResult) -> Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fric_lab::fit::result::{FitReference, LeftOut, Numbers, OpenPartResult, OpenResult};
+    use fric_lab::fit::result::{FitReference, LeftOut, OpenPartResult, OpenResult};
+    use fric_lab::numbers::Numbers;
 
     /// A fit of one cable whose error before was 10 N with this zero.
     fn fit(offset_n: f64, standard_error_n: f64, open: Vec<OpenResult>, is_scale_told: bool) -> FitResult {

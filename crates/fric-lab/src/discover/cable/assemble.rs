@@ -1,18 +1,18 @@
 //! What a discovery on one cable returns, put together from the outcome of its passes.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use fric_core::effects::Effect;
 use fric_core::parameters::{OFFSET, Values};
 
 use super::CableLog;
-use super::given::{comparable, judged};
 use super::passes::Outcome;
 use crate::certainty::log_zeros::log_zeros;
 use crate::discover::Task;
-use crate::discover::faults::RecordingFault;
 use crate::discover::figures::curve::curves;
 use crate::discover::figures::profile::profile;
+use crate::discover::given::given_to;
 use crate::discover::naming::{self, Named, STRONG_BIC, Search};
 use crate::discover::report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 use crate::discover::rest::empirical::{Table, has_table, table, without_table};
@@ -20,9 +20,13 @@ use crate::discover::rest::neighbours::neighbours_of;
 use crate::discover::rest::places::Place;
 use crate::discover::rest::{self, WORTH};
 use crate::discover::workbench::{self, Trial, Workbench};
-use crate::fit::{LogValue, SampleCounts, StoreError};
+use crate::fit::{CableRecord, LogValue, Row, SampleCounts, StoreError};
+use crate::recording_fault::RecordingFault;
 use crate::replay::Deviation;
+use crate::samples::held::repeated_forces;
+use crate::samples::interpolated::measured;
 use crate::samples::record::PerLog;
+use crate::samples::split::split;
 use crate::search::problem::Problem;
 use crate::set_up::SetUp;
 
@@ -221,4 +225,43 @@ fn finding(search: &Search<'_, '_>, named: &Named, held_out_n: Deviation) -> Fin
         }
     });
     Finding { effect: named.effect, held_out_n, delta_bic, runner_up }
+}
+
+/// Adds faults that were corrected for the whole log, the last one first. The given model is the one without the corrections.
+pub fn add_corrected_faults(
+    found: &mut CableDiscovery,
+    given: &CableRecord<'_>,
+    faults: &[RecordingFault],
+    stop: &AtomicBool,
+) {
+    found.faults.splice(0..0, faults.iter().rev().cloned());
+    let Some((counts, start)) = given_to(given, stop) else { return };
+    let (blocks, measured) = (split(given), measured(given));
+    let bench = Workbench { record: *given, blocks: &blocks, counts: &counts, measured: &measured, stop };
+    let base = bench.try_one(&start);
+    found.residual_before_n = bench.residuals_n(&base.values);
+    found.before = Model {
+        held_out_n: judged(&found.residual_before_n, &bench.used(true)),
+        covariance: crate::certainty::undetermined::covariance(&bench.problem(&base.free, None), &[base.values]),
+        fitted: base.free,
+        values: base.values,
+    };
+}
+
+/// Returns the error over the held-out samples.
+fn judged(residual_n: &[f64], held_out: &[bool]) -> Deviation {
+    let judged = residual_n.iter().zip(held_out).filter(|(_, held_out)| **held_out);
+    judged.fold(Deviation::default(), |mut sum, (number, _)| {
+        sum.add(*number);
+        sum
+    })
+}
+
+/// Returns which cycles have a reference and a force that the sensor does not only repeat.
+pub(super) fn comparable(record: &CableRecord<'_>) -> Vec<bool> {
+    let repeated = repeated_forces(record).unwrap_or_default();
+    let is_comparable = |(place, row): (usize, &Row)| {
+        row.is_sound() && record.reference_n(place).is_finite() && repeated.get(place) != Some(&true)
+    };
+    record.rows.iter().enumerate().map(is_comparable).collect()
 }

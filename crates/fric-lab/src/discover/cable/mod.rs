@@ -1,32 +1,33 @@
 //! Discovery on one cable: takes its record and returns everything that was found.
 
 mod assemble;
-mod given;
 mod passes;
 
 use std::sync::atomic::AtomicBool;
 
 use fric_core::parameters::{MU, Values};
 
-use self::given::{comparable, given_model};
+use self::assemble::comparable;
 use crate::candidates::catalogue::around;
 use crate::discover::faults::oscillations::Oscillations;
 use crate::discover::faults::spectrum::{Times, motion_and_load};
-use crate::discover::faults::{Fault, RecordingFault, faulty_stretches, leave_out, of_stretches, spikes_among};
+use crate::discover::faults::{faulty_stretches, leave_out, of_stretches, spikes_among};
+use crate::discover::given::given_model;
+use crate::discover::lack::{lack_of, lack_of_noise, lack_of_samples};
 use crate::discover::naming::Named;
-use crate::discover::readiness::{lack_of, lack_of_noise, lack_of_samples};
 use crate::discover::report::CableDiscovery;
 use crate::discover::rest::places::Excess;
 use crate::discover::workbench::{self, Trial, Workbench};
 use crate::discover::{Task, rest};
 use crate::effects::Around;
 use crate::fit::{CableRecord, FitOptions, StoreError};
+use crate::recording_fault::{Fault, RecordingFault};
 use crate::samples::conditions::{Condition, conditions, load, log, time};
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
 use crate::samples::steps::CoarseSteps;
 
-pub use given::{acts, add_corrected_faults, fitted_to, given_to};
+pub use assemble::add_corrected_faults;
 
 /// The steps of a converter are reported if rounding makes at least this fraction of the noise variance.
 const LEAST_ROUNDING: f64 = 0.1;

@@ -4,11 +4,11 @@ use fric_core::effects::Effect;
 use fric_core::parameters::{OFFSET, Values};
 use nalgebra::DMatrix;
 
-use super::given::{acts, determined_beside};
 use super::{BELIEVED_RATIO, CableLog};
 use crate::candidates::catalogue as candidates;
 use crate::certainty::assumed;
 use crate::discover::effort::Effort;
+use crate::discover::given::{acts, determined_beside};
 use crate::discover::naming::{Naming, Search};
 use crate::discover::rest::places::Place;
 use crate::discover::rest::stretch::{Stretch, stretch_of_cable};

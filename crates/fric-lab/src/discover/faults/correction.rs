@@ -6,13 +6,13 @@
 use fric_core::Sample;
 use rayon::prelude::*;
 
-use super::RecordingFault;
 use super::length_noise::{self, LengthNoise};
 use super::timing;
 use crate::fit::cables::{prepared, used};
 use crate::fit::{
     CableFit, CableRecord, FitOptions, Measurements, Progress, SampleStore, StoreError, fit_cables, residuals_n,
 };
+use crate::recording_fault::RecordingFault;
 use crate::samples::noise::white_noise_apart;
 use crate::samples::selection::leave_out_warm_up;
 

@@ -9,14 +9,12 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use fric_core::robot::edit::set_monitor;
-use fric_core::robot::file::RobotFileError;
 use fric_core::signals::SignalLimits;
 use rayon::prelude::*;
 
-use super::{Fault, RecordingFault};
-use crate::discover::cable::fitted_to;
+use crate::discover::given::fitted_to;
 use crate::fit::{CableRecord, Measurements, Row, SampleStore, StoreError};
+use crate::recording_fault::{Fault, LENGTH_NOISE_M, RecordingFault};
 use crate::samples::cable::PLAY_OF_NOISE;
 use crate::search::gang::Gang;
 
@@ -24,8 +22,6 @@ use crate::search::gang::Gang;
 const LEAST_GAIN: f64 = 0.005;
 /// Number of cycles that suffice to see whether the noise matters: 65 s at 1 kHz.
 const MOST_CYCLES: usize = 65_536;
-/// The key of the play in the robot's monitor.
-const LENGTH_NOISE_M: &str = "length_noise_m";
 
 /// Noise of the lengths that matters.
 pub struct LengthNoise {
@@ -109,22 +105,4 @@ fn liveliest(record: &CableRecord<'_>) -> Range<usize> {
     };
     let stretches = record.logs().flat_map(of_log);
     stretches.max_by(|one, other| way_m(one).total_cmp(&way_m(other))).unwrap_or(0..0)
-}
-
-/// Writes the play into the text of a robot file where lengths are noisy.
-///
-/// # Errors
-/// Returns the [`RobotFileError`] of [`set_monitor`].
-pub fn with_play<'a>(
-    text: String,
-    origin: &str,
-    mut faults: impl Iterator<Item = &'a RecordingFault>,
-) -> Result<String, RobotFileError> {
-    let play_m = faults
-        .find(|fault| fault.fault == Fault::NoisyLength)
-        .and_then(|fault| fault.parameters.iter().find(|(key, _)| *key == LENGTH_NOISE_M).map(|(_, value)| *value));
-    match play_m {
-        Some(play_m) => set_monitor(&text, origin, LENGTH_NOISE_M, play_m),
-        None => Ok(text),
-    }
 }

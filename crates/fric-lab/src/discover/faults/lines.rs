@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use super::passes::Passes;
 use super::spectrum::{NEIGHBOURS, Occurrence, STRETCH, Spectrum, Times, Together, goes_on, occurrences};
-use super::{Fault, RecordingFault};
+use crate::recording_fault::{Fault, RecordingFault};
 
 /// By how many times their median it stands out.
 const LEAST_RATIO: f64 = 12.0;

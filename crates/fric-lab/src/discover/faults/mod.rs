@@ -19,6 +19,7 @@ pub mod vibration;
 use std::ops::Range;
 
 use crate::fit::CableRecord;
+use crate::recording_fault::{Fault, RecordingFault};
 use crate::samples::selection::{Standing, cycles_to_forget};
 use crate::samples::steps::CoarseSteps;
 use crate::samples::still::{runs, stands_still};
@@ -44,40 +45,6 @@ const QUICK_RATIO: f64 = 4.0;
 const AFTER_S: f64 = 0.1;
 /// Two stretches closer than this are merged, s.
 const MERGED_S: f64 = 0.1;
-
-/// The kind of a recording fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// A spectral line that is unrelated to the motion and load of the cable.
-    Hum,
-    /// A damped oscillation of one frequency, as of a sensor on a mount that gives way.
-    Vibration,
-    /// The length trembles, and the model takes it for motion.
-    NoisyLength,
-    /// The force sensor repeats one value.
-    Frozen,
-    /// The force sensor is saturated.
-    Clipped,
-    /// The force sensor shows single values far from those before and after.
-    Spikes,
-    /// The converter behind the force sensor has coarse steps.
-    CoarseConverter,
-    /// The reference is late.
-    ReferenceDelay,
-    /// The clock of the reference runs at another rate than the clock of the winch.
-    ClockSkew,
-}
-
-/// A fault of a recording. It concerns the log, not the machine.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RecordingFault {
-    /// The kind of the fault.
-    pub fault: Fault,
-    /// The values of the fault, by key with the unit.
-    pub parameters: Vec<(&'static str, f64)>,
-    /// Time intervals of the fault, s since the first sample; empty if it lasts throughout the log.
-    pub intervals_s: Vec<[f64; 2]>,
-}
 
 /// Cycles in which the sensor cannot be trusted.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 
-use super::RecordingFault;
 use super::lines::{Line, lines};
 use super::passes::Passes;
 use super::spectrum::{Times, Together};
 use super::vibration::{Vibration, Way, steady, vibration};
 use crate::fit::{CableRecord, Row};
+use crate::recording_fault::RecordingFault;
 
 /// Frequencies that differ by less than this share are the same; of a vibration, which is broader, by less than its second number.
 const SAME_RATIO: [f64; 2] = [1e-3, 1e-2];

@@ -6,7 +6,6 @@ use fric_core::effects::Effect;
 use fric_core::parameters::MU;
 
 use super::shifted::{Shift, shifted};
-use super::timing::LEAST_GAIN;
 use crate::candidates::catalogue::{around, fitted, has, starts};
 use crate::discover::lag::behind_lag;
 use crate::discover::naming::projection::{Columns, Signals, visit_less_projection};
@@ -14,6 +13,9 @@ use crate::discover::workbench::{Model, NEAR_ERRORS, Trial, Workbench};
 use crate::fit::{CableRecord, Parameter, Row};
 use crate::samples::split::Block;
 use crate::search::vector::Coordinate;
+
+/// Minimum relative decrease of the held-out sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
+pub const LEAST_GAIN: f64 = 0.005;
 
 /// Maximum number of improvements, and the fraction of a sample interval below which an improvement counts as none. Noise in the reference makes its
 /// rate larger and each improvement smaller, so more improvements are needed. With 8, a delay of 6 ms on a bench with slowly changing forces comes

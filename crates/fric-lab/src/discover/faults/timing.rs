@@ -18,20 +18,18 @@ use fric_core::parameters::OFFSET;
 
 use super::of_length::{is_in_time, late_s};
 use super::shifted::{Shift, shifted};
-use super::time_fit::{Case, Corrected, Kind, Step, rates, seconds};
-use super::{Fault, RecordingFault};
-use crate::discover::cable::given_to;
+use super::time_fit::{Case, Corrected, Kind, LEAST_GAIN, Step, rates, seconds};
+use crate::discover::given::given_to;
 use crate::discover::lag::is_better_than_behind_lag;
 use crate::discover::naming::STRONG_BIC;
 use crate::discover::naming::evidence::delta_bic;
 use crate::discover::workbench::{Model, Trial, Workbench};
 use crate::fit::{CableRecord, Parameter};
 use crate::lateness::Lateness;
+use crate::recording_fault::{Fault, RecordingFault};
 use crate::samples::interpolated::measured;
 use crate::samples::split::split;
 
-/// Minimum relative decrease of the held-out sum of squares. It corresponds to 0.25 % of the rms, as for an effect.
-pub const LEAST_GAIN: f64 = 0.005;
 /// The time of the reference is examined if more than this fraction of the residual's squares is correlated with the rate of the reference. It is a
 /// twentieth of the required gain, because parameters may compensate for part of it. At half this value more logs are examined in vain; at double, a
 /// delay whose rate the parameters compensate for to 90 % is missed.

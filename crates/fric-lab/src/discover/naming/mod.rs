@@ -33,7 +33,7 @@ use self::evidence::{delta_bic, inflation};
 use self::fits::gains;
 use self::justification::is_at_end;
 use super::effort::Effort;
-use super::readiness::has_one_speed;
+use super::lack::has_one_speed;
 use super::workbench::{Trial, Workbench};
 use crate::candidates::catalogue::{fitted, has};
 use crate::effects::Around;

@@ -4,7 +4,6 @@ use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, VISCOUS, Values};
 use serde::{Serialize, Serializer};
 
 use super::effect::{Candidate, EffectResult, TriedResult, effect_result, errors};
-use super::fault::FaultResult;
 use super::finite;
 use super::machine::{Machine, Robot, is_absent};
 use super::place::{UnexplainedResult, WhereResult, unexplained};
@@ -14,7 +13,9 @@ use crate::discover::report::{CableDiscovery, Model, Verdict};
 use crate::discover::rest::empirical;
 use crate::errors::ForceError;
 use crate::fit::Parameter;
-use crate::fit::result::{LeftOut, LogValues, Numbers};
+use crate::fit::result::{LeftOut, LogValues};
+use crate::numbers::Numbers;
+use crate::recording_fault::FaultResult;
 use crate::search::vector::Coordinate;
 
 /// One cable, or the tendon of a manipulator.

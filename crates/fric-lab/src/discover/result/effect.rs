@@ -11,7 +11,7 @@ use crate::discover::naming::Refusal;
 use crate::discover::report::{self, CableDiscovery, Finding, Tried};
 use crate::discover::rest::empirical;
 use crate::fit::Parameter;
-use crate::fit::result::Numbers;
+use crate::numbers::Numbers;
 
 /// An effect that was found.
 #[derive(Clone, Debug, Serialize)]

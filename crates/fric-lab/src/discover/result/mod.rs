@@ -7,7 +7,6 @@
 mod cable;
 mod common;
 mod effect;
-mod fault;
 mod machine;
 mod place;
 mod revised;
@@ -21,6 +20,7 @@ use super::report::CableDiscovery;
 use super::wrench::WrenchDiscovery;
 use crate::fit::FitError;
 use crate::fit::readiness::Readiness;
+use crate::words::Times;
 
 use self::cable::cable_result;
 use self::common::common_effects;
@@ -29,7 +29,6 @@ use self::machine::is_absent;
 pub use cable::{DiscoverCableResult, Missing};
 pub use common::{CommonEffect, CommonParameter};
 pub use effect::{Candidate, EffectResult, Evidence, RunnerUpResult, TriedResult};
-pub use fault::FaultResult;
 pub use machine::{Absent, Machine, Robot, Value};
 pub use place::{UnexplainedResult, WhereResult};
 pub use revised::RevisedResult;
@@ -104,6 +103,12 @@ impl DiscoverResult {
             }
         }
         self
+    }
+
+    /// Returns the logs that its times are of.
+    #[must_use]
+    pub fn times(&self) -> Times<'_> {
+        Times::new(self.log.iter().map(String::as_str).zip(self.log_start_s.iter().copied()))
     }
 
     /// Checks that at least one cable has a verdict.

@@ -4,10 +4,10 @@ use serde::Serialize;
 
 use super::finite;
 use super::machine::{Machine, Robot, is_absent};
-use crate::discover::faults::RecordingFault;
 use crate::discover::report::Unexplained;
 use crate::discover::rest::neighbours::Neighbour;
 use crate::discover::rest::places::Place;
+use crate::recording_fault::RecordingFault;
 
 /// A range of a condition in which the disagreement is concentrated.
 #[derive(Clone, Debug, Serialize)]

@@ -7,7 +7,7 @@ use super::finite;
 use crate::discover::Verdict;
 use crate::discover::wrench::{GeometryFinding, WrenchDiscovery};
 use crate::errors::WrenchError;
-use crate::fit::result::Numbers;
+use crate::numbers::Numbers;
 use crate::replay::WrenchReference;
 
 /// Names of the components with their units.

@@ -4,13 +4,13 @@ use std::fmt::Write as _;
 
 use fric_core::effects::Effect;
 
-use super::{Times, condition, newtons, percent};
 use crate::discover::Verdict;
-use crate::discover::faults::Fault;
 use crate::discover::rest::places::LEAST_CONCENTRATION;
 use crate::discover::result::{DiscoverCableResult, EffectResult, RevisedResult, UnexplainedResult, WhereResult};
 use crate::fit::HALF_INTERVAL;
+use crate::recording_fault::Fault;
 use crate::text::{listed, quantity, significant};
+use crate::words::{Times, condition, newtons, percent};
 
 /// The lower end of a range counts as zero below this fraction of the upper end.
 const NO_MORE_THAN_ZERO: f64 = 0.01;

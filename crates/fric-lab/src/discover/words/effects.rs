@@ -2,7 +2,6 @@
 
 use fric_core::effects::Effect;
 
-use super::{condition, evidence, name_of, newtons};
 use crate::discover::naming::Refusal;
 use crate::discover::result::{
     CommonEffect, CommonParameter, DiscoverResult, EffectResult, Evidence, RunnerUpResult, TablePoint, TableResult,
@@ -11,6 +10,7 @@ use crate::discover::result::{
 use crate::fit::HALF_INTERVAL;
 use crate::set_up;
 use crate::text::{listed, quantity};
+use crate::words::{condition, evidence, name_of, newtons};
 
 impl EffectResult {
     /// Returns the parameters with their 95 % intervals, and says that they are that.

@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use crate::discover::result::{Evidence, TriedTogether};
     use crate::errors::WrenchError;
-    use crate::fit::result::Numbers;
+    use crate::numbers::Numbers;
 
     fn gap(reference: WrenchReference, geometry: Vec<GeometryResult>) -> WrenchGap {
         WrenchGap {

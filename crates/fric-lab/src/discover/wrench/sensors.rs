@@ -15,10 +15,11 @@ use nalgebra::Vector6;
 use crate::discover::faults::lines::{Line, lines};
 use crate::discover::faults::passes::Passes;
 use crate::discover::faults::spectrum::{Times, motion_and_load};
-use crate::discover::faults::{Fault, FaultyStretch, RecordingFault, faulty_stretches, leave_out, of_stretches};
+use crate::discover::faults::{FaultyStretch, faulty_stretches, leave_out, of_stretches};
 use crate::fit::balance::by_moment_arm;
 use crate::fit::wrench::ReferenceWrenches;
 use crate::fit::{CableRecord, Measurements, Row};
+use crate::recording_fault::{Fault, RecordingFault};
 use crate::samples::selection::Standing;
 
 /// Width of the mean, s: one period of 50 Hz.

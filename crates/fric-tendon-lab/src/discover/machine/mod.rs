@@ -10,7 +10,7 @@ pub mod joint;
 mod naming;
 
 use fric_lab::fit::Progress;
-use fric_lab::fit::result::Numbers;
+use fric_lab::numbers::Numbers;
 use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
 use rayon::prelude::*;
 

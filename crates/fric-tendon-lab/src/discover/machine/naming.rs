@@ -1,7 +1,7 @@
 //! Names of what a search has found, and the file with it.
 
 use fric_lab::fit::HALF_INTERVAL;
-use fric_lab::fit::result::Numbers;
+use fric_lab::numbers::Numbers;
 use fric_tendon::file::{ManipulatorFile, ManipulatorTables};
 
 use super::candidate::Candidate;

@@ -4,7 +4,7 @@ mod drawings;
 mod tables;
 
 use fric_lab::discover::result::DiscoverResult;
-use fric_lab::discover::words::percent;
+use fric_lab::words::percent;
 use fric_tendon_lab::Run;
 use fric_tendon_lab::comparison::{WayShapes, spread};
 use fric_tendon_lab::discover::{Manipulator, TendonDiscovery, alternatives, rest_in_words, tried_in_words};

@@ -1,6 +1,6 @@
 //! The tables of the pages, which notebooks show too.
 
-use fric_lab::fit::result::Numbers;
+use fric_lab::numbers::Numbers;
 use fric_tendon_lab::identify::TendonFitResult;
 use fric_tendon_lab::result::{CalibrationResult, FrictionResult, HoleResult, ShapeResult};
 use maud::{Markup, html};

@@ -1,10 +1,10 @@
 //! The drawings of a cable: the gap effect by effect, the table of what has no name, and residuals over a condition.
 
 use fric_lab::discover::result::{DiscoverCableResult, TablePoint, TableResult};
-use fric_lab::discover::words::{condition, newtons, percent};
 use fric_lab::discover::{Profile, ProfileCell};
 use fric_lab::fit::HALF_INTERVAL;
 use fric_lab::text::scaled_unit;
+use fric_lab::words::{condition, newtons, percent};
 use maud::{Markup, PreEscaped, html};
 
 use crate::report::chart::{Chart, Span};

@@ -6,10 +6,10 @@ mod plots;
 use fric_lab::discover::result::{
     Candidate, DiscoverCableResult, DiscoverResult, EffectResult, WhereResult, WrenchGap,
 };
-use fric_lab::discover::words::{Stretch, Times, condition, evidence, interval, name_of, percent, significance};
 use fric_lab::discover::{CableDiscovery, Model, Verdict};
 use fric_lab::fit::{HALF_INTERVAL, Parameter};
 use fric_lab::text::quantity;
+use fric_lab::words::{Stretch, Times, condition, evidence, interval, name_of, percent, significance};
 use maud::{Markup, PreEscaped, html};
 
 use self::drawings::{ladder, of_table, over_condition};
@@ -24,7 +24,7 @@ use crate::verdict;
 #[must_use]
 pub fn page(result: &DiscoverResult, discoveries: &[CableDiscovery], provenance: &Provenance) -> String {
     let mut plots = Plots::default();
-    let (common, times) = (Common::of(discoveries), Times::of(result));
+    let (common, times) = (Common::of(discoveries), result.times());
     let content = html! {
         @if result.cables.len() > 1 {
             nav {

@@ -27,7 +27,7 @@ use realfft::num_complex::Complex;
 use self::search::loudest;
 use crate::discover::faults::lines::{LEAST_SHARE, Line, mean_square};
 use crate::discover::faults::spectrum::{Fill, LINE_WIDTH, Occurrence, Spectrum, Times, Together, occurrences};
-use crate::discover::faults::{Fault, RecordingFault};
+use crate::recording_fault::{Fault, RecordingFault};
 use crate::samples::conditions::sign;
 
 /// If a wave along the cable explains at least this fraction of the oscillation, it is a ripple. Where strokes repeat themselves, such a wave explains up

@@ -1,11 +1,10 @@
 //! Layouts of tables: over which condition and range, and what they change; and their fit with the penalty that predicts best.
 
 use fric_core::effects::Effect;
-use fric_core::effects::empirical::{Over, RATIO, SHARE_PLACES, SHARES, SIZE};
+use fric_core::effects::empirical::{Over, RATIO, SHARE_PLACES, SIZE};
 use fric_core::parameters::{MU, Values};
 
-use super::normal::{Normal, Rows};
-use super::tried::Tried;
+use super::normal::Rows;
 use super::without_table;
 use super::words::signal_of;
 use crate::discover::rest::places::Place;
@@ -13,10 +12,6 @@ use crate::discover::workbench::{Model, Workbench};
 use crate::fit::Parameter;
 use crate::search::problem::Problem;
 
-/// Trial penalties on the second differences of a table, relative to the mean information on a share.
-const PENALTIES: [f64; 5] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
-/// Number of folds for cross-validation over the training blocks.
-const FOLDS: usize = 4;
 /// Fractions of the samples that the range of a table leaves out at either end: all samples except outliers, or the central part with more closely
 /// spaced points.
 const TAIL_RATIOS: [f64; 2] = [0.002, 0.05];
@@ -90,7 +85,7 @@ pub fn candidates(bench: &Workbench<'_>, base: &Model, residual_n: &[f64], place
 
 impl Layout {
     /// Returns a model's values with this table, with the given size and shares.
-    fn set(&self, base: &Values, size: f64, shares: &[f64]) -> Values {
+    pub fn set(&self, base: &Values, size: f64, shares: &[f64]) -> Values {
         let mut values = without_table(base);
         values[match self.changes {
             Changes::Force => SIZE,
@@ -157,30 +152,6 @@ impl Layout {
             rows.held_out.push(bench.blocks.get(block).is_some_and(|block| block.held_out));
         });
         rows
-    }
-
-    /// Fits the table beside the model with the penalty that predicts best.
-    pub fn tried(&self, bench: &Workbench<'_>, base: &Model) -> Option<Tried> {
-        let values = self.set(&base.values, 1.0, &[0.0; SHARES]);
-        let rows = self.rows(bench, base, &values);
-        let learned: Vec<usize> =
-            bench.blocks.iter().enumerate().filter(|(_, block)| !block.held_out).map(|(place, _)| place).collect();
-        let fold_of = |block: usize| learned.iter().position(|place| *place == block).map(|place| place % FOLDS);
-        let folds: Vec<Option<usize>> = (0..bench.blocks.len()).map(fold_of).collect();
-        let normals: Vec<Normal> = (0..FOLDS)
-            .map(|fold| rows.normal(|row| folds.get(rows.blocks[row]).copied().flatten() == Some(fold)))
-            .collect();
-        let all = normals.iter().fold(Normal::none(rows.width), |sum, normal| sum.and(normal));
-        let predicted = |penalty: f64| -> Option<f64> {
-            let of_fold = |normal: &Normal| {
-                let step = all.less(normal).solved(rows.first_share, penalty, &[0.0; SHARES])?;
-                Some(normal.squares_after(&step))
-            };
-            normals.iter().map(of_fold).sum::<Option<f64>>()
-        };
-        let best = PENALTIES.iter().filter_map(|penalty| Some((predicted(*penalty)?, *penalty)));
-        let (predicted, penalty) = best.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        Some(Tried { layout: self.clone(), penalty, predicted, rows })
     }
 }
 

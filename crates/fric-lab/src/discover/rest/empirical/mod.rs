@@ -23,6 +23,7 @@ use fric_core::parameters::Values;
 use nalgebra::DMatrix;
 
 use self::layout::candidates;
+use self::tried::Tried;
 use super::WORTH;
 use super::places::{Place, sum_and_error};
 use crate::discover::workbench::{Model, Workbench};
@@ -65,7 +66,7 @@ pub fn table(bench: &Workbench<'_>, model: &Model, noise_n: f64, places: &[Place
     let mut candidates = candidates(bench, &base, &residual_n, places);
     // A constant load says nothing about how the force depends on it. A table over the load would turn any force into that constant.
     candidates.retain(|candidate| candidate.over != Over::Load || bench.knows_load(noise_n));
-    let chosen = candidates.iter().filter_map(|candidate| candidate.tried(bench, &base));
+    let chosen = candidates.iter().filter_map(|candidate| Tried::of(candidate, bench, &base));
     let chosen = chosen.min_by(|one, other| one.predicted.total_cmp(&other.predicted))?;
     let holds_elsewhere = chosen.holds_elsewhere(bench, noise_n);
     let (values, covariance, inflation, fitted) = chosen.finished(bench, &base)?;

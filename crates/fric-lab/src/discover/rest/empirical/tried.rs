@@ -8,11 +8,15 @@ use fric_core::parameters::Values;
 use nalgebra::{DMatrix, DVector};
 
 use super::layout::{Changes, Layout, condition, shares};
-use super::normal::Rows;
+use super::normal::{Normal, Rows};
 use crate::discover::workbench::{Model, Workbench};
 use crate::fit::Parameter;
 use crate::search::gram::inverse_of_normal;
 
+/// Trial penalties on the second differences of a table, relative to the mean information on a share.
+const PENALTIES: [f64; 5] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
+/// Number of folds for cross-validation over the training blocks.
+const FOLDS: usize = 4;
 /// The same minimum in conditions where the table was not learned, if there is an excess.
 const LEAST_CLOSED_ELSEWHERE: f64 = 0.25;
 /// Excess squares below this fraction of the noise variance count as small.
@@ -34,6 +38,30 @@ pub struct Tried {
 }
 
 impl Tried {
+    /// Fits the table beside the model with the penalty that predicts best.
+    pub fn of(layout: &Layout, bench: &Workbench<'_>, base: &Model) -> Option<Self> {
+        let values = layout.set(&base.values, 1.0, &[0.0; SHARES]);
+        let rows = layout.rows(bench, base, &values);
+        let learned: Vec<usize> =
+            bench.blocks.iter().enumerate().filter(|(_, block)| !block.held_out).map(|(place, _)| place).collect();
+        let fold_of = |block: usize| learned.iter().position(|place| *place == block).map(|place| place % FOLDS);
+        let folds: Vec<Option<usize>> = (0..bench.blocks.len()).map(fold_of).collect();
+        let normals: Vec<Normal> = (0..FOLDS)
+            .map(|fold| rows.normal(|row| folds.get(rows.blocks[row]).copied().flatten() == Some(fold)))
+            .collect();
+        let all = normals.iter().fold(Normal::none(rows.width), |sum, normal| sum.and(normal));
+        let predicted = |penalty: f64| -> Option<f64> {
+            let of_fold = |normal: &Normal| {
+                let step = all.less(normal).solved(rows.first_share, penalty, &[0.0; SHARES])?;
+                Some(normal.squares_after(&step))
+            };
+            normals.iter().map(of_fold).sum::<Option<f64>>()
+        };
+        let best = PENALTIES.iter().filter_map(|penalty| Some((predicted(*penalty)?, *penalty)));
+        let (predicted, penalty) = best.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        Some(Self { layout: layout.clone(), penalty, predicted, rows })
+    }
+
     /// Whether a table that was learned without a part of another condition holds in this part.
     pub fn holds_elsewhere(&self, bench: &Workbench<'_>, noise_n: f64) -> bool {
         let others = Over::ALL.into_iter().filter(|over| *over != self.layout.over);

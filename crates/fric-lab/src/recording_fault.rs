@@ -1,20 +1,92 @@
-//! Faults of the recording in words, each with what to do about it.
+//! A fault of a recording: its kind and values, and what to say about it.
 
-use super::{Times, newtons};
-use crate::discover::faults::Fault;
-use crate::discover::result::FaultResult;
+use serde::Serialize;
+
+use crate::numbers::Numbers;
 use crate::text::{quantity, significant, wrapped};
+use crate::words::{Times, newtons};
 
-/// Describes the recording faults of each cable that last throughout the logs, one paragraph per fault; empty if there are none.
-pub fn recording_lines<'a>(cables: impl Iterator<Item = (&'a str, &'a [FaultResult])>) -> String {
-    let told = cables.flat_map(|(name, faults)| {
-        faults.iter().map(move |fault| wrapped(&format!("{name}, recording: "), &fault.in_words(&Times::default())))
-    });
-    let text: String = told.collect();
-    if text.is_empty() { text } else { format!("\n{text}") }
+/// Key of the play that keeps a noisy length out: of this fault, and of the monitor in a robot file.
+pub(crate) const LENGTH_NOISE_M: &str = "length_noise_m";
+
+/// The kind of a recording fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// A spectral line that is unrelated to the motion and load of the cable.
+    Hum,
+    /// A damped oscillation of one frequency, as of a sensor on a mount that gives way.
+    Vibration,
+    /// The length trembles, and the model takes it for motion.
+    NoisyLength,
+    /// The force sensor repeats one value.
+    Frozen,
+    /// The force sensor is saturated.
+    Clipped,
+    /// The force sensor shows single values far from those before and after.
+    Spikes,
+    /// The converter behind the force sensor has coarse steps.
+    CoarseConverter,
+    /// The reference is late.
+    ReferenceDelay,
+    /// The clock of the reference runs at another rate than the clock of the winch.
+    ClockSkew,
+}
+
+/// A fault of a recording. It concerns the log, not the machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordingFault {
+    /// The kind of the fault.
+    pub fault: Fault,
+    /// The values of the fault, by key with the unit.
+    pub parameters: Vec<(&'static str, f64)>,
+    /// Time intervals of the fault, s since the first sample; empty if it lasts throughout the log.
+    pub intervals_s: Vec<[f64; 2]>,
+}
+
+/// A fault of a recording, as results have it.
+#[derive(Clone, Debug, Serialize)]
+pub struct FaultResult {
+    /// Its name.
+    pub kind: &'static str,
+    /// Its values, by key with the unit.
+    pub parameters: Numbers,
+    /// Time intervals of the fault, s since the first sample; empty if it lasts throughout the log.
+    pub intervals_s: Vec<[f64; 2]>,
+    /// The kind of the fault.
+    #[serde(skip)]
+    pub fault: Fault,
+}
+
+impl Fault {
+    /// Returns the name used in results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hum => "hum",
+            Self::Vibration => "vibration",
+            Self::NoisyLength => "noisy_length",
+            Self::Frozen => "frozen",
+            Self::Clipped => "clipped",
+            Self::Spikes => "spikes",
+            Self::CoarseConverter => "coarse_converter",
+            Self::ReferenceDelay => "reference_delay",
+            Self::ClockSkew => "clock_skew",
+        }
+    }
 }
 
 impl FaultResult {
+    /// Creates the entry of a fault.
+    #[must_use]
+    pub fn of(found: &RecordingFault) -> Self {
+        Self {
+            kind: found.fault.name(),
+            parameters: Numbers(found.parameters.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect()),
+            intervals_s: found.intervals_s.clone(),
+            fault: found.fault,
+        }
+    }
+
     /// Returns the fault and what to do, as a sentence without its full stop. `times` are those of the result.
     #[must_use]
     pub fn in_words(&self, times: &Times<'_>) -> String {
@@ -78,4 +150,13 @@ impl FaultResult {
             }
         }
     }
+}
+
+/// Describes the recording faults of each cable that last throughout the logs, one paragraph per fault; empty if there are none.
+pub fn recording_lines<'a>(cables: impl Iterator<Item = (&'a str, &'a [FaultResult])>) -> String {
+    let told = cables.flat_map(|(name, faults)| {
+        faults.iter().map(move |fault| wrapped(&format!("{name}, recording: "), &fault.in_words(&Times::default())))
+    });
+    let text: String = told.collect();
+    if text.is_empty() { text } else { format!("\n{text}") }
 }

@@ -1,18 +1,15 @@
-//! The given model of a cable: fitted to the log, and judged on the held-out samples.
+//! The given model of a cable, fitted to the log.
 
 use std::sync::atomic::AtomicBool;
 
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 
 use crate::certainty::undetermined::vagueness;
-use crate::discover::faults::{RecordingFault, faulty_stretches, leave_out};
-use crate::discover::readiness::lack_of;
-use crate::discover::report::{CableDiscovery, Model};
+use crate::discover::faults::{faulty_stretches, leave_out};
+use crate::discover::lack::lack_of;
 use crate::discover::workbench::{self, Trial, Workbench};
 use crate::fit::cables::{Search, prepared, used};
-use crate::fit::{CableRecord, FitOptions, Parameter, Row};
-use crate::replay::Deviation;
-use crate::samples::held::repeated_forces;
+use crate::fit::{CableRecord, FitOptions, Parameter};
 use crate::samples::split::split;
 use crate::search::gang::{Gang, Seat};
 use crate::search::solve::{Solution, Unknown};
@@ -36,42 +33,12 @@ pub fn fitted_to<'a>(record: &CableRecord<'a>, seat: Seat<'a>, stop: &'a AtomicB
     Some(Search::run(record, &standings, &FitOptions::default(), stop, seat))
 }
 
-/// Adds faults that were corrected for the whole log, the last one first. The given model is the one without the corrections.
-pub fn add_corrected_faults(
-    found: &mut CableDiscovery,
-    given: &CableRecord<'_>,
-    faults: &[RecordingFault],
-    stop: &AtomicBool,
-) {
-    found.faults.splice(0..0, faults.iter().rev().cloned());
-    let Some((counts, start)) = given_to(given, stop) else { return };
-    let (blocks, measured) = (split(given), crate::samples::interpolated::measured(given));
-    let bench = Workbench { record: *given, blocks: &blocks, counts: &counts, measured: &measured, stop };
-    let base = bench.try_one(&start);
-    found.residual_before_n = bench.residuals_n(&base.values);
-    found.before = Model {
-        held_out_n: judged(&found.residual_before_n, &bench.used(true)),
-        covariance: crate::certainty::undetermined::covariance(&bench.problem(&base.free, None), &[base.values]),
-        fitted: base.free,
-        values: base.values,
-    };
-}
-
-/// Returns the error over the held-out samples.
-pub(super) fn judged(residual_n: &[f64], held_out: &[bool]) -> Deviation {
-    let judged = residual_n.iter().zip(held_out).filter(|(_, held_out)| **held_out);
-    judged.fold(Deviation::default(), |mut sum, (number, _)| {
-        sum.add(*number);
-        sum
-    })
-}
-
 /// Returns the given model with start values from the data, and the parameters that the log does not determine, which stay as given.
 ///
 /// Free are the friction that acts, an offset if the file has one (the offset of a sensor that was not tared is to be found, not to be fitted away),
 /// and the parameters of the file's effects. The fit that gives the start values has an offset free. Beside it the log may not determine a parameter of an
 /// effect, as a gain under one load, that it determines without: the file has no offset, so that this parameter is fitted like the others.
-pub(super) fn given_model(
+pub fn given_model(
     record: &CableRecord<'_>,
     paper: &Solution,
     counts: &[bool],
@@ -105,7 +72,7 @@ pub(super) fn given_model(
 }
 
 /// Fits a model with further parameters free. Returns those that the training samples determine then.
-pub(super) fn determined_beside(
+pub fn determined_beside(
     bench: &Workbench<'_>,
     model: &workbench::Model,
     held: &[Parameter],
@@ -127,13 +94,4 @@ pub fn acts(parameter: &Parameter, values: &Values) -> bool {
         SIGMA => values[MU] > 0.0 && values[SIGMA] < NO_PRESLIDING_N_PER_M,
         _ => true,
     }
-}
-
-/// Returns which cycles have a reference and a force that the sensor does not only repeat.
-pub(super) fn comparable(record: &CableRecord<'_>) -> Vec<bool> {
-    let repeated = repeated_forces(record).unwrap_or_default();
-    let is_comparable = |(place, row): (usize, &Row)| {
-        row.is_sound() && record.reference_n(place).is_finite() && repeated.get(place) != Some(&true)
-    };
-    record.rows.iter().enumerate().map(is_comparable).collect()
 }

@@ -1,7 +1,6 @@
 //! Time intervals in words. A result counts its times through all its logs; a person looks for them in the log that they are of.
 
 use super::interval;
-use crate::discover::result::DiscoverResult;
 
 /// Maximum number of intervals to list.
 const MOST_INTERVALS: usize = 12;
@@ -25,11 +24,9 @@ pub struct Stretch<'a> {
 }
 
 impl<'a> Times<'a> {
-    /// Returns those of a discovery.
-    #[must_use]
-    pub fn of(result: &'a DiscoverResult) -> Self {
-        let names = result.log.iter().map(String::as_str);
-        let logs: Vec<(&str, f64)> = names.zip(result.log_start_s.iter().copied()).collect();
+    /// Creates those of logs with these names and starts in the time of the result, s.
+    pub fn new(logs: impl Iterator<Item = (&'a str, f64)>) -> Self {
+        let logs: Vec<(&str, f64)> = logs.collect();
         Self { logs: if logs.len() > 1 { logs } else { Vec::new() } }
     }
 
