@@ -25,7 +25,7 @@ use crate::fit::Row;
 const MOST_WAVE: f64 = 0.7;
 const QUICKEST_S: f64 = 4.0;
 const WINDOW_S: f64 = 0.25;
-/// Maximum ratio of a drift to the noise. A greater one needs another cause.
+/// Maximum ratio of a drift to the noise, white and smoothed by an amplifier. A greater one needs another cause.
 const MOST_WANDER: f64 = 2.0;
 /// Windows over which slow changes are computed, s; shorter than the memory of a drift.
 const CHANGE_S: f64 = 0.1;
@@ -40,13 +40,18 @@ pub const WORTH: f64 = 0.1;
 /// the conditions that the excess is a function of.
 pub fn wander<'e, 'a>(excess: &'e Excess<'a>, places: &[Place]) -> Option<(f64, Drift<'e, 'a>)> {
     let share = excess.share();
-    let is_wander =
-        share > WORTH && share < MOST_WANDER * MOST_WANDER && places.is_empty() && share_of_wave(excess) < MOST_WAVE;
-    let drift = if is_wander { Drift::of(excess)? } else { return None };
+    if share <= WORTH || !places.is_empty() || share_of_wave(excess) >= MOST_WAVE {
+        return None;
+    }
     let [quick, quick_of_motion] = quick_shares(excess);
+    let smoothed = share * quick * (1.0 - quick_of_motion);
+    if share - smoothed >= MOST_WANDER * MOST_WANDER * (1.0 + smoothed) {
+        return None;
+    }
+    let drift = Drift::of(excess)?;
     let of_cable = share_of_motion(excess).max(share_of_rate(excess)).max(share_of_past(excess));
-    let slow = (1.0 - quick) * (1.0 - of_cable);
-    let wander = share * (slow + quick * (1.0 - quick_of_motion)) * drift.steady_share();
+    let slow = share * (1.0 - quick) * (1.0 - of_cable);
+    let wander = (slow + smoothed) * drift.steady_share();
     (wander > 0.0).then_some((wander, drift))
 }
 

@@ -208,9 +208,9 @@ impl DiscoverCableResult {
             text += " The log has trouble of its own that is no matter of friction.";
         }
         if let Some(wander) = wander_n {
-            text += " Beside white noise a slow wander of ";
+            text += " Beside white noise, ";
             text += &wander;
-            text += " is left that goes with nothing the cable does.";
+            text += " are left that go with nothing the cable does, as of an amplifier that smooths its noise or a zero that wanders.";
         }
         text
     }
