@@ -21,7 +21,7 @@ const NEGLIGIBLE_OFFSET_RATIO: f64 = 0.01;
 /// Half width for F_pv of all pulleys at 1 m/s, as a fraction of the cable's friction.
 const NEGLIGIBLE_VISCOUS_RATIO: f64 = 0.125;
 /// Half width for effects, as a fraction of the friction, and for the delay, s.
-const NEGLIGIBLE_RATIO: f64 = 0.05;
+pub const NEGLIGIBLE_RATIO: f64 = 0.05;
 const NEGLIGIBLE_DELAY_S: f64 = 5e-4;
 /// The model is trusted to this fraction of the friction.
 const BELIEVED_RATIO: f64 = 1e-3;

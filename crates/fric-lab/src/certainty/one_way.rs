@@ -19,7 +19,7 @@ use crate::search::vector::Parameter;
 /// A cable that goes back for less than this fraction of its way goes one way. With half or double, nothing changes but for logs that hardly go back.
 const ONE_WAY_RATIO: f64 = 0.02;
 /// Greatest difference of a slope from the mean of both, relative to the friction: as of a parameter, whose interval must be narrower than itself.
-const MOST_APART_RATIO: f64 = 0.5;
+pub const MOST_APART_RATIO: f64 = 0.5;
 /// A speed that varies by less than this fraction of its mean square is constant but for rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -77,13 +77,20 @@ fn load_tells_zero(record: &CableRecord<'_>) -> bool {
 /// Returns the combination of zero and friction that such a log leaves open, from a solution with the given zero, in a step as large as takes all friction
 /// for a zero; where no friction was found, the given one.
 pub fn combination(problem: &Problem<'_>, zero: Parameter, values: &Values, given: &Values) -> Option<OpenCombination> {
-    let friction = Parameter::all().find(|parameter| parameter.place() == MU)?;
-    let other_mu = if values[MU] > 0.0 { 0.0 } else { given[MU] };
-    let with = |place: usize, value: f64| {
-        let mut other = *values;
-        other[place] = value;
-        other
-    };
+    let mut other = *values;
+    other[MU] = if values[MU] > 0.0 { 0.0 } else { given[MU] };
+    zero_instead(problem, zero, values, &other)
+}
+
+/// Returns the combination of a zero with the parameters that differ between two models, in a step from one to the other that leaves the mean force.
+pub fn zero_instead(
+    problem: &Problem<'_>,
+    zero: Parameter,
+    values: &Values,
+    other: &Values,
+) -> Option<OpenCombination> {
+    let mut with_zero = *values;
+    with_zero[zero.place()] += 1.0;
     let alone = Problem { seat: None, ..problem.clone() };
     let mean_n = |values: Values| {
         let forces = alone.forces(&[values])?;
@@ -95,9 +102,11 @@ pub fn combination(problem: &Problem<'_>, zero: Parameter, values: &Values, give
     };
     let found_n = mean_n(*values)?;
     // The force is linear in a zero while the cable slides.
-    let by_zero = mean_n(with(zero.place(), values[zero.place()] + 1.0))? - found_n;
-    let zero_n = (found_n - mean_n(with(MU, other_mu))?) / by_zero;
-    let part = |parameter, step| OpenPart { cable: 0, parameter, step: zero_n.signum() * step };
-    let parts = vec![part(zero, zero_n), part(friction, other_mu - values[MU])];
+    let by_zero = mean_n(with_zero)? - found_n;
+    let zero_n = (found_n - mean_n(*other)?) / by_zero;
+    let part = |parameter: Parameter, step| OpenPart { cable: 0, parameter, step: zero_n.signum() * step };
+    let change = |parameter: Parameter| part(parameter, other[parameter.place()] - values[parameter.place()]);
+    let others = Parameter::all().map(change).filter(|part| part.step.abs() > 0.0);
+    let parts = std::iter::once(part(zero, zero_n)).chain(others).collect();
     (zero_n.is_finite() && zero_n.abs() > 0.0).then_some(OpenCombination { parts })
 }

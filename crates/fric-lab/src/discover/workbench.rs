@@ -5,9 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use fric_core::parameters::{OFFSET, Values};
-use nalgebra::{DVector, Matrix5, Vector5};
+use nalgebra::DVector;
 use rayon::prelude::*;
 
+use crate::certainty::one_load::BesideMotion;
 use crate::fit::{CableRecord, Parameter};
 use crate::samples::record::PerLog;
 use crate::samples::split::{Block, used};
@@ -24,9 +25,6 @@ pub const NEAR_ERRORS: f64 = 0.5;
 /// Models are tried side by side while their forces and derivatives take up at most this, bytes: six minutes at 1 kHz with eight parameters on any number
 /// of cores up to ten, and an hour's one by one. A log of a minute is never held up.
 const FORCES_BYTES: usize = 256 << 20;
-
-/// Columns of the motion with less than this fraction of the squares of the greatest contain only rounding errors.
-const LEAST_OF_MOTION: f64 = 1e-12;
 
 /// A model to try: start values and free parameters.
 #[derive(Clone, Debug)]
@@ -112,33 +110,11 @@ impl<'a> Workbench<'a> {
     /// motion may be friction and is no other load. What is left, in the reference and in the sensor, must exceed the noise and, because no friction model is
     /// exact, the friction: the part of the difference of the two that goes with the motion. In simulated logs under varying load it is 1.3 to 4 times that.
     pub fn knows_load(&self, noise_n: f64) -> bool {
-        let gain = self.record.params.frictionless_gain();
-        let mut direction = 0.0;
-        let (mut products, mut count) = (Matrix5::<f64>::zeros(), 0.0);
-        let rows = self.record.rows.iter().zip(self.record.references_n).zip(self.used(true));
-        for ((row, known_n), used) in rows {
-            let signals = &row.signals;
-            if signals.displacement_m.abs() > 0.0 {
-                direction = signals.displacement_m.signum();
-            }
-            let of = Vector5::new(1.0, direction, signals.speed_m_per_s, gain * signals.sensor_force_n, *known_n);
-            if used && of.iter().all(|number| number.is_finite()) {
-                products += of * of.transpose();
-                count += 1.0;
-            }
-        }
-        // Where a log has one direction or one speed only, its column is like another one.
-        let by_motion = products.fixed_view::<3, 3>(0, 0);
-        let Ok(inverse) = by_motion.into_owned().pseudo_inverse(LEAST_OF_MOTION * by_motion.norm()) else {
-            return false;
-        };
-        let mixed = products.fixed_view::<3, 2>(0, 3);
-        let left = products.fixed_view::<2, 2>(3, 3) - mixed.transpose() * inverse * mixed;
-        let (shown, known, shared) = (left[(0, 0)], left[(1, 1)], left[(0, 1)]);
-        let difference = products.column(3) - products.column(4);
-        let friction = difference[3] - difference[4] - difference[0].powi(2) / count - (shown - 2.0 * shared + known);
-        let least = friction.max(count * noise_n * noise_n);
-        shown > least && known > least
+        let shown_n = |cycle| self.record.frictionless_n(cycle);
+        BesideMotion::of(&self.record, &self.used(true), shown_n).is_some_and(|left| {
+            let least = left.of_motion.max(left.count * noise_n * noise_n);
+            left.force > least && left.reference > least
+        })
     }
 
     /// Returns the least-squares problem over the training samples.

@@ -12,8 +12,9 @@ use super::report::{CableFit, ForceErrors, LogValue};
 use super::{FitOptions, Progress, start};
 use crate::candidates::newcomers::with_newcomers;
 use crate::certainty::log_zeros::{LogZeroEstimate, log_zeros};
-use crate::certainty::one_way;
+use crate::certainty::one_load::is_one_load;
 use crate::certainty::undetermined::solve;
+use crate::certainty::{one_load, one_way};
 use crate::replay::Deviation;
 use crate::samples::cable::{CableRecord, Zeroed};
 use crate::samples::interpolated::measured;
@@ -145,7 +146,7 @@ impl<'a> Search<'a> {
         seat: Seat<'a>,
     ) -> Self {
         let given = record.params.values();
-        let problem = Problem {
+        let mut problem = Problem {
             members: vec![Member { record: *record, free: options.shared(record) }],
             comparison: Comparison::Forces,
             loss: Loss::Squares,
@@ -153,21 +154,15 @@ impl<'a> Search<'a> {
             stop,
             seat: Some(Rc::new(seat)),
         };
-        let starts = start::starts(&problem, &[given], record.cycle_s);
-        let starts = with_newcomers(&problem, starts, &[given], record.cycle_s);
-        let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
-        let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
-            let mut standings = all.to_vec();
-            leave_out_warm_up(&problem, &starts, &mut standings);
-            let mut problem = Problem { used: used(&standings), ..problem.clone() };
-            let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings);
-            (solution, standings)
-        };
-        let (mut solution, mut standings) = solve_without_warm_up(starts);
-        if warm_up_was_misjudged(record, &solution, all, &standings) {
-            let evaluation_count = solution.evaluation_count;
-            (solution, standings) = solve_without_warm_up(vec![solution.values]);
-            solution.evaluation_count += evaluation_count;
+        let (mut start, mut solution, mut standings) = solved(&problem, record, all, options);
+        if let Some(parameter) = options.zero_beside_gain(record).filter(|_| !solution.unknowns.is_empty()) {
+            let judged = Problem { used: used(&standings), ..problem.clone() };
+            if solution.values.first().is_some_and(|values| is_one_load(&judged, values)) {
+                problem.members.iter_mut().for_each(|member| member.free.retain(|free| *free != parameter));
+                (start, solution, standings) = solved(&problem, record, all, options);
+                solution.undetermined.push(Unknown { member: 0, parameter });
+                solution.open.extend(one_load::combination(&problem, parameter, &solution));
+            }
         }
         if let Some(parameter) = options.open_zero(record).filter(|_| !solution.unknowns.is_empty()) {
             solution.undetermined.push(Unknown { member: 0, parameter });
@@ -196,6 +191,33 @@ impl Search<'_> {
     fn log_zeros(&self) -> Vec<Option<LogZeroEstimate>> {
         self.solution.values.first().map_or_else(Vec::new, |values| log_zeros(&self.problem, values))
     }
+}
+
+/// Solves the problem of one cable. Returns the start values, the solution, and the standing of each sample after the search.
+fn solved(
+    problem: &Problem<'_>,
+    record: &CableRecord<'_>,
+    all: &[Standing],
+    options: &FitOptions,
+) -> (Values, Solution, Vec<Standing>) {
+    let given = record.params.values();
+    let starts = start::starts(problem, &[given], record.cycle_s);
+    let starts = with_newcomers(problem, starts, &[given], record.cycle_s);
+    let start = starts.first().and_then(|start| start.first()).copied().unwrap_or(given);
+    let solve_without_warm_up = |starts: Vec<Vec<Values>>| {
+        let mut standings = all.to_vec();
+        leave_out_warm_up(problem, &starts, &mut standings);
+        let mut problem = Problem { used: used(&standings), ..problem.clone() };
+        let solution = solve(&mut problem, starts, &[given], record.cycle_s, options.weighing, &mut standings);
+        (solution, standings)
+    };
+    let (mut solution, mut standings) = solve_without_warm_up(starts);
+    if warm_up_was_misjudged(record, &solution, all, &standings) {
+        let evaluation_count = solution.evaluation_count;
+        (solution, standings) = solve_without_warm_up(vec![solution.values]);
+        solution.evaluation_count += evaluation_count;
+    }
+    (start, solution, standings)
 }
 
 /// Whether the fitted values, as far as they can be trusted, imply another warm-up than the start values did. A memory that no log is long enough to

@@ -5,6 +5,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::OFFSET;
 
 use crate::candidates::catalogue::is_fitted_once_it_acts;
+use crate::certainty::one_load::{is_gain, is_zero};
 use crate::certainty::one_way::is_zero_open;
 use crate::samples::cable::CableRecord;
 use crate::samples::record::LogZero;
@@ -27,10 +28,10 @@ impl FitOptions {
         let mut free = self.free(record.params);
         if let Some(per_log) = record.per_log {
             let is_wanted = |zero: &LogZero| *zero != per_log.zero && self.parameters.is_some();
-            let is_zero = |parameter: &Parameter| {
+            let is_left_out = |parameter: &Parameter| {
                 LogZero::ALL.iter().any(|zero| parameter.place() == zero.place() && !is_wanted(zero))
             };
-            free.retain(|parameter| !is_zero(parameter));
+            free.retain(|parameter| !is_left_out(parameter));
         }
         if let Some(zero) = self.open_zero(record) {
             free.retain(|parameter| *parameter != zero);
@@ -43,8 +44,14 @@ impl FitOptions {
         if self.parameters.is_some() || record.per_log.is_some() || !is_zero_open(record) {
             return None;
         }
-        let is_zero = |parameter: &Parameter| LogZero::ALL.iter().any(|zero| parameter.place() == zero.place());
         self.free(record.params).into_iter().find(is_zero)
+    }
+
+    /// Returns the zero among the free parameters that a cable's logs share, which stays as given where one load does not tell it from a gain beside it;
+    /// `None` if there are not both, or if they were asked for.
+    pub(crate) fn zero_beside_gain(&self, record: &CableRecord<'_>) -> Option<Parameter> {
+        let free = if self.parameters.is_none() { self.shared(record) } else { Vec::new() };
+        free.iter().copied().find(is_zero).filter(|_| free.iter().any(is_gain))
     }
 
     /// Returns the free parameters of a cable.

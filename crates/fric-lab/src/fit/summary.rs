@@ -4,6 +4,7 @@ use fric_core::effects::Effect;
 use fric_core::parameters::{FRICTION_COUNT, MU, OFFSET, SIGMA, VISCOUS};
 
 use super::result::{FitCableResult, FitReference, FitResult, LogValues, OpenPartResult, OpenResult};
+use crate::certainty::one_load::is_gain;
 use crate::numbers::Numbers;
 use crate::recording_fault::recording_lines;
 use crate::search::vector::Parameter;
@@ -381,7 +382,9 @@ fn open_combination(cable: &FitCableResult, open: &OpenResult) -> String {
     };
     let mut listed = vec![part(held).replacen(&held.parameter, &format!("{} of {}", held.parameter, cable.name), 1)];
     listed.extend(others.iter().map(part));
-    let excitation = Parameter::named(&held.parameter).map_or("", |parameter| parameter.row().excitation);
+    // Of a zero beside a gain, other loads tell both.
+    let all = || open.0.iter().filter_map(|part| Parameter::named(&part.parameter));
+    let excitation = all().find(is_gain).or(all().next()).map_or("", |parameter| parameter.row().excitation);
     let advice = format!(
         "{} of {} is kept as given, and the others hold with it. To tell them apart record {excitation}.",
         held.parameter, cable.name

@@ -5,7 +5,7 @@ use fric_lab::fit::{CableFit, FitOptions, Termination};
 
 use super::logs::{Log, assert_near, deviation, parameter, undetermined, value};
 use super::oracle::{Bench, PULLEYS, strokes, wandering};
-use crate::simulate::robots::bench;
+use crate::simulate::robots::{bench, bench_with};
 
 /// The values given, all wrong.
 const GIVEN: [(&str, f64); 4] =
@@ -91,6 +91,33 @@ fn noise_of_the_sensor_is_no_load() {
         let viscous_n = 1.5 * (value(&fit, "viscous_n_s_per_m") - truth.viscous_n_s_per_m) * 0.1;
         let found_n = (gain(value(&fit, "mu")) - gain(mu)) * 60.0 + viscous_n;
         assert!(found_n.abs() < 0.2, "{mu}, {way}: {found_n} N");
+    }
+}
+
+/// Under one load a gain goes with any zero: the zero stays as given, and the gain takes what it is wrong by. What varies is noise.
+#[test]
+fn one_load_leaves_the_zero_beside_a_gain() {
+    const LOAD_N: f64 = 60.0;
+    let truth = Bench { sensor_noise_n: 0.8, reference_noise_n: 1.0, ..Bench::default() };
+    let mut log = truth.run(20.0, strokes(0.05, 0.3), |_| LOAD_N);
+    log.0.iter_mut().for_each(|cycle| cycle.cables[0].sensor_force_n *= 1.25);
+    for given_gain in [0.9, 1.25] {
+        let line = format!("effects = [{{ kind = \"sensor_gain\", gain = {given_gain} }}]");
+        let robot =
+            bench_with(PULLEYS, "mu = 0.05, sigma_n_per_m = 300.0, viscous_n_s_per_m = 0.7, offset_n = -0.1", &line);
+        let fit = log.fit(&robot, &FitOptions::default()).remove(0);
+        assert!(undetermined(&fit).contains(&"offset_n".to_owned()), "{:?}", undetermined(&fit));
+        assert_eq!(value(&fit, "offset_n").to_bits(), (-0.1_f64).to_bits());
+        let gain = value(&fit, "sensor_gain.gain");
+        let agrees = 1.25 * (LOAD_N - truth.offset_n) / (LOAD_N + 0.1);
+        assert!((gain / agrees - 1.0).abs() < 0.002, "{given_gain}: {gain} for {agrees}");
+        assert!((value(&fit, "mu") / truth.mu - 1.0).abs() < 0.1, "{given_gain}: {}", value(&fit, "mu"));
+        // What is told to be open: the whole gain, or a zero in its place.
+        let open = fit.open.iter().find(|open| open.parts[0].parameter == parameter("offset_n")).unwrap();
+        let of_gain = open.parts.iter().find(|part| part.parameter == parameter("sensor_gain.gain")).unwrap();
+        assert!((of_gain.step.abs() / (gain - 1.0) - 1.0).abs() < 1e-9, "{given_gain}: {open:?}");
+        let zero_per_gain_n = open.parts[0].step / of_gain.step;
+        assert!((zero_per_gain_n / (LOAD_N + 0.1) - 1.0).abs() < 0.005, "{given_gain}: {zero_per_gain_n} N");
     }
 }
 
