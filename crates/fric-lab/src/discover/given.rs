@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use fric_core::parameters::{MU, NO_PRESLIDING_N_PER_M, OFFSET, SIGMA, VISCOUS, Values};
 
+use crate::certainty::one_load::{is_gain, is_one_load, is_zero};
 use crate::certainty::undetermined::vagueness;
 use crate::discover::faults::{faulty_stretches, leave_out};
 use crate::discover::lack::lack_of;
@@ -37,7 +38,8 @@ pub fn fitted_to<'a>(record: &CableRecord<'a>, seat: Seat<'a>, stop: &'a AtomicB
 ///
 /// Free are the friction that acts, an offset if the file has one (the offset of a sensor that was not tared is to be found, not to be fitted away),
 /// and the parameters of the file's effects. The fit that gives the start values has an offset free. Beside it the log may not determine a parameter of an
-/// effect, as a gain under one load, that it determines without: the file has no offset, so that this parameter is fitted like the others.
+/// effect or μ, as a gain under one load, that it determines without: the file has no offset, so that this parameter is fitted like the others. The same holds
+/// for a viscous friction that the file does not have.
 pub fn given_model(
     record: &CableRecord<'_>,
     paper: &Solution,
@@ -47,7 +49,9 @@ pub fn given_model(
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
     let all = FitOptions::default().shared(record);
-    let has_other_zero = all.iter().any(|parameter| parameter.place() == OFFSET && !acts(parameter, &given));
+    let is_beyond_file =
+        |parameter: &Parameter| [OFFSET, VISCOUS].contains(&parameter.place()) && !acts(parameter, &given);
+    let has_more = all.iter().any(is_beyond_file);
     let acting = all.into_iter().filter(|parameter| acts(parameter, &given));
     let (mut held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
     let mut values = given;
@@ -57,11 +61,12 @@ pub fn given_model(
         }
     }
     let mut model = workbench::Model { values, free };
-    let of_effects: Vec<Parameter> = held.iter().copied().filter(|parameter| !parameter.is_friction()).collect();
-    if has_other_zero && !of_effects.is_empty() {
+    let is_tried = |parameter: &Parameter| !parameter.is_friction() || parameter.place() == MU;
+    let tried: Vec<Parameter> = held.iter().copied().filter(is_tried).collect();
+    if has_more && !tried.is_empty() {
         let blocks = split(record);
         let bench = Workbench { record: *record, blocks: &blocks, counts, measured: &[], stop };
-        let (trial, told) = determined_beside(&bench, &model, &of_effects);
+        let (trial, told) = determined_beside(&bench, &model, &tried);
         held.retain(|parameter| !told.contains(parameter));
         model.free.extend(told);
         for parameter in &model.free {
@@ -71,7 +76,7 @@ pub fn given_model(
     (model, held)
 }
 
-/// Fits a model with further parameters free. Returns those that the training samples determine then.
+/// Fits a model with further parameters free. Returns those that the training samples determine then. A zero beside a gain under one load is none of them.
 pub fn determined_beside(
     bench: &Workbench<'_>,
     model: &workbench::Model,
@@ -79,6 +84,9 @@ pub fn determined_beside(
 ) -> (Trial, Vec<Parameter>) {
     let mut with_all = model.clone();
     with_all.free.extend(held);
+    if with_all.free.iter().any(is_gain) && is_one_load(&bench.problem(&[], None), &model.values) {
+        with_all.free.retain(|parameter| !held.contains(parameter) || !is_zero(parameter));
+    }
     let trial = bench.try_one(&with_all);
     let (_, all) = vagueness(&bench.problem(&trial.free, None), &[trial.values]);
     let is_told = |(vagueness, of): &(f64, Unknown)| *vagueness <= 1.0 && held.contains(&of.parameter);

@@ -39,6 +39,7 @@ pub(crate) fn describe(result: &DiscoverResult) -> String {
             && cable.wander_n.is_none_or(|wander_n| wander_n <= 0.0)
             && cable.tried.is_empty()
             && cable.faults.is_empty()
+            && cable.undetermined.is_empty()
             && cable.revised.is_empty()
             && cable.left_out.outliers == 0
             && !cable.is_constant()

@@ -8,6 +8,7 @@ mod empirical;
 mod faulty;
 mod late;
 mod of_length;
+mod one_load;
 mod revised;
 mod turning;
 mod undetermined;

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use fric_core::effects::Effect;
 use fric_core::parameters::{OFFSET, Values};
+use nalgebra::DMatrix;
 
 use super::CableLog;
 use super::passes::Outcome;
@@ -20,7 +21,7 @@ use crate::discover::rest::neighbours::neighbours_of;
 use crate::discover::rest::places::Place;
 use crate::discover::rest::{self, WORTH};
 use crate::discover::workbench::{self, Trial, Workbench};
-use crate::fit::{CableRecord, LogValue, Row, SampleCounts, StoreError};
+use crate::fit::{CableRecord, LogValue, Parameter, Row, SampleCounts, StoreError};
 use crate::recording_fault::RecordingFault;
 use crate::replay::Deviation;
 use crate::samples::held::repeated_forces;
@@ -73,12 +74,8 @@ impl CableLog<'_> {
             Some(table) => (&table.values, &table.fitted, &table.covariance),
             None => (&fitted.values, &fitted.parameters, &fitted.covariance),
         };
-        let after = Model {
-            values: *values,
-            fitted: parameters.clone(),
-            covariance: covariance.clone(),
-            held_out_n: held_out_of(values),
-        };
+        let (parameters, covariance) = without(&fitted.open, parameters, covariance);
+        let after = Model { values: *values, fitted: parameters, covariance, held_out_n: held_out_of(values) };
         let bench = self.bench(&outcome.counts);
         let search = Search::new(&bench, noise_n, self.around(base, noise_n), base, self.steady, &outcome.effort);
         // The last step of the ladder is the extended model as it is written.
@@ -212,6 +209,13 @@ impl CableLog<'_> {
     }
 }
 
+/// Returns parameters with their covariance, less those that are open.
+fn without(open: &[Parameter], parameters: &[Parameter], covariance: &DMatrix<f64>) -> (Vec<Parameter>, DMatrix<f64>) {
+    let all = parameters.iter().copied().enumerate();
+    let (places, told): (Vec<usize>, Vec<Parameter>) = all.filter(|(_, parameter)| !open.contains(parameter)).unzip();
+    (told, covariance.select_rows(&places).select_columns(&places))
+}
+
 fn finding(search: &Search<'_, '_>, named: &Named, held_out_n: Deviation) -> Finding {
     let bic = |trial: &Trial| search.delta_bic(&named.without, trial, named.inflation);
     let delta_bic = bic(&named.with);
@@ -221,7 +225,7 @@ fn finding(search: &Search<'_, '_>, named: &Named, held_out_n: Deviation) -> Fin
             effect: *effect,
             delta_bic: other_bic,
             held_out_squares: trial.held_out,
-            is_as_good: named.is_lag_as_good || other_bic - delta_bic < STRONG_BIC,
+            is_as_good: named.is_as_good || other_bic - delta_bic < STRONG_BIC,
         }
     });
     Finding { effect: named.effect, held_out_n, delta_bic, runner_up }

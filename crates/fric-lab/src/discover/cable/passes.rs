@@ -7,6 +7,8 @@ use nalgebra::DMatrix;
 use super::{BELIEVED_RATIO, CableLog};
 use crate::candidates::catalogue as candidates;
 use crate::certainty::assumed;
+use crate::certainty::one_load::{is_gain, is_one_load, is_zero};
+use crate::certainty::undetermined::reported_covariance;
 use crate::discover::effort::Effort;
 use crate::discover::given::{acts, determined_beside};
 use crate::discover::naming::{Naming, Search};
@@ -52,6 +54,9 @@ pub(super) struct Fitted {
     pub(super) parameters: Vec<Parameter>,
     /// Parameters that the samples do not determine.
     undetermined: Vec<Unknown>,
+    /// Parameters among those that were fitted whose values are one choice of many, of which the given one is none: a gain under one load, and the friction
+    /// that changes with it.
+    pub(super) open: Vec<Parameter>,
     pub(super) covariance: DMatrix<f64>,
 }
 
@@ -233,28 +238,45 @@ impl CableLog<'_> {
                 crate::fit::cables::Search::run(&record, &standings, &options, self.stop, gang.seat(0)).solution;
             let parameters = solution.unknowns.iter().map(|unknown| unknown.parameter).collect();
             let Solution { values, undetermined, covariance, .. } = solution;
-            Some(Fitted { values: *values.first()?, parameters, undetermined, covariance })
+            Some(Fitted { values: *values.first()?, parameters, undetermined, open: Vec::new(), covariance })
         };
         let of_file = FitOptions::default().shared(&self.record);
         let of = |also: fn(&Parameter) -> bool| {
             let params = self.record.params.with_values(&model.values).ok()?;
             let mut parameters = FitOptions::default().shared(&self.record.with_params(&params));
             parameters.retain(|parameter| is_known(parameter) || also(parameter));
-            let fitted = solved(&model.values, parameters.clone())?;
-            // What these samples do not determine stays in the file as it was, unless they contradict that. The model that is judged has it so too.
-            let is_held = |parameter: &&Parameter| !fitted.parameters.contains(parameter);
-            let (mut start, mut is_changed) = (fitted.values, false);
-            for place in of_file.iter().filter(is_held).map(Parameter::place) {
-                is_changed |= start[place].to_bits() != given[place].to_bits();
-                start[place] = given[place];
+            let problem = self.bench(counts).problem(&[], None);
+            let is_gain_open = of_file.iter().any(is_gain) && is_one_load(&problem, &model.values);
+            if is_gain_open {
+                parameters.retain(|parameter| !is_zero(parameter));
             }
-            if !is_changed {
+            // What these samples do not determine stays in the file as it was, unless they contradict that. The model that is judged has it so too.
+            let as_given = |fitted: Fitted, parameters: &[Parameter], is_held: &dyn Fn(&Parameter) -> bool| {
+                let (mut start, mut is_changed) = (fitted.values, false);
+                for place in of_file.iter().filter(|parameter| is_held(parameter)).map(Parameter::place) {
+                    is_changed |= start[place].to_bits() != given[place].to_bits();
+                    start[place] = given[place];
+                }
+                if !is_changed {
+                    return Some(fitted);
+                }
+                let is_left = |parameter: &&Parameter| !of_file.contains(parameter) || !is_held(parameter);
+                let held = solved(&start, parameters.iter().filter(is_left).copied().collect())?;
+                Some(if contradicts(&problem, &[held.values], &problem, &[fitted.values]) { fitted } else { held })
+            };
+            let fitted = solved(&model.values, parameters.clone())?;
+            let determined = fitted.parameters.clone();
+            let fitted = as_given(fitted, &parameters, &|parameter| !determined.contains(parameter))?;
+            if !is_gain_open {
                 return Some(fitted);
             }
-            parameters.retain(|parameter| fitted.parameters.contains(parameter) || !of_file.contains(parameter));
-            let held = solved(&start, parameters)?;
-            let problem = self.bench(counts).problem(&[], None);
-            Some(if contradicts(&problem, &[held.values], &problem, &[fitted.values]) { fitted } else { held })
+            let determined = fitted.parameters.clone();
+            let mut fitted = as_given(fitted, &determined, &is_gain)?;
+            if fitted.parameters.iter().any(is_gain) {
+                let changes = |parameter: &&Parameter| parameter.is_friction() || is_gain(parameter);
+                fitted.open = fitted.parameters.iter().filter(changes).copied().collect();
+            }
+            Some(fitted)
         };
         let has_chance_offset = |fitted: &Fitted| {
             let place = fitted.parameters.iter().position(|parameter| parameter.place() == OFFSET);
@@ -264,13 +286,34 @@ impl CableLog<'_> {
                 fitted.values[OFFSET].abs() <= HALF_INTERVAL * error_n && HALF_INTERVAL * error_n <= noise_n;
             model.values[OFFSET].abs() > 0.0 || is_chance
         };
-        of(|parameter| parameter.place() == OFFSET).filter(has_chance_offset).or_else(|| of(|_| false)).unwrap_or_else(
-            || {
-                let problem = self.bench(counts).problem(&model.free, None);
-                let covariance = crate::certainty::undetermined::covariance(&problem, &[model.values]);
-                Fitted { values: model.values, parameters: model.free.clone(), undetermined: Vec::new(), covariance }
-            },
-        )
+        let fitted = of(|parameter| parameter.place() == OFFSET).filter(has_chance_offset).or_else(|| of(|_| false));
+        let mut fitted = fitted.unwrap_or_else(|| {
+            let problem = self.bench(counts).problem(&model.free, None);
+            let covariance = crate::certainty::undetermined::covariance(&problem, &[model.values]);
+            Fitted {
+                values: model.values,
+                parameters: model.free.clone(),
+                undetermined: Vec::new(),
+                open: Vec::new(),
+                covariance,
+            }
+        });
+        self.widen_beside_gain(counts, &mut fitted);
+        fitted
+    }
+
+    /// Widens the errors of a model with a gain to those that it has with a zero of the sensor beside it: what is known of the gain rests on that zero.
+    fn widen_beside_gain(&self, counts: &[bool], fitted: &mut Fitted) {
+        let has_zero = self.bench(counts).has_zero(&fitted.parameters) || fitted.parameters.iter().any(is_zero);
+        if has_zero || !fitted.parameters.iter().any(is_gain) || !fitted.open.is_empty() {
+            return;
+        }
+        let count = fitted.parameters.len();
+        let zero = Parameter::of(Effect::SensorOffset);
+        let free: Vec<Parameter> = fitted.parameters.iter().copied().chain(zero).collect();
+        let problem = Problem { used: counts.to_vec(), ..self.bench(counts).problem(&free, None) };
+        let covariance = reported_covariance(&problem, &[fitted.values], &fitted.undetermined);
+        fitted.covariance = covariance.view((0, 0), (count, count)).into_owned();
     }
 
     /// Returns which of the held parameters the log determines once the model has the first of the effects that were missing, or the first two, and so on:

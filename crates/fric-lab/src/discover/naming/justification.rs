@@ -46,7 +46,7 @@ impl Search<'_, '_> {
                 .or_else(|| self.usual_instead(found, effect, inflation))
                 .or_else(|| self.straight(&others, effect, inflation));
             let with = model.clone();
-            named.push(Named { effect, with, without, runner_up: None, is_lag_as_good: false, inflation, refusal });
+            named.push(Named { effect, with, without, runner_up: None, is_as_good: false, inflation, refusal });
         }
         if named.iter().all(|named| named.refusal.is_none()) && !self.unrivalled.contains(&set) {
             match self.rival(&model, &named) {
@@ -115,6 +115,9 @@ impl Search<'_, '_> {
         let cycle_s = self.bench.record.cycle_s;
         if is_at_end(effect, &model.values, cycle_s) {
             return Some(Refusal::AtBound);
+        }
+        if let Some(open) = self.open_beside(model, effect) {
+            return Some(open);
         }
         let gain = without_it.held_out - model.held_out;
         let is_strong = self.delta_bic(without_it, model, inflation) < -STRONG_BIC;

@@ -17,6 +17,7 @@ pub mod evidence;
 mod fits;
 pub mod justification;
 mod late;
+mod one_load;
 pub mod projection;
 mod rivals;
 mod steadiness;
@@ -26,6 +27,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fric_core::effects::Effect;
 use fric_core::effects::empirical::SHARES;
+use fric_core::effects::sensor_gain::GAIN;
 use fric_core::parameters::{MU, OFFSET, Values};
 
 use self::entry::LAST_TURNS;
@@ -36,6 +38,7 @@ use super::effort::Effort;
 use super::lack::has_one_speed;
 use super::workbench::{Trial, Workbench};
 use crate::candidates::catalogue::{fitted, has};
+use crate::certainty::one_load::{is_gain, is_one_load};
 use crate::effects::Around;
 use crate::fit::Parameter;
 use crate::samples::conditions::Condition;
@@ -72,8 +75,9 @@ pub struct Named {
     pub without: Trial,
     /// The best other effect in its place.
     pub runner_up: Option<(Effect, Trial)>,
-    /// Whether that is a lag of the sensor which, seen behind the lag, explains as much, although its BIC is worse.
-    pub is_lag_as_good: bool,
+    /// Whether that explains as much although its BIC is worse: a lag of the sensor, seen behind the lag, or what goes with the load in the place
+    /// of a zero, under one load.
+    pub is_as_good: bool,
     /// Factor by which memory in the residual weakens the evidence, at least 1.
     pub inflation: f64,
     /// The reason why the effect cannot stay.
@@ -251,7 +255,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut named = Vec::new();
         for _ in 0..PASSES {
             let before = set_of(&found);
-            self.refused = self.excluded();
+            self.refused = self.excluded(&found);
             named = self.pass(&mut found);
             if set_of(&found) == before || self.is_spent(&found) {
                 break;
@@ -260,7 +264,10 @@ impl<'b, 'a> Search<'b, 'a> {
         for (place, named) in named.iter_mut().enumerate() {
             named.runner_up = self.alternative(&found, place);
             if let Some(lagging) = self.lag_in_place_of(&found, named.effect) {
-                (named.runner_up, named.is_lag_as_good) = (Some((Effect::SensorLag, lagging)), true);
+                (named.runner_up, named.is_as_good) = (Some((Effect::SensorLag, lagging)), true);
+            }
+            if let Some(other) = self.as_good_under_one_load(&found, named.effect) {
+                (named.runner_up, named.is_as_good) = (Some(other), true);
             }
         }
         let tried = self.tried(&found);
@@ -278,13 +285,20 @@ impl<'b, 'a> Search<'b, 'a> {
         self.effort.is_spent(self.given_count + found.len())
     }
 
-    /// Returns the candidates that no log like this one can justify.
-    fn beyond_the_log(&self) -> BTreeMap<Effect, Refusal> {
+    /// Returns the candidates that no log like this one can justify beside the effects found.
+    fn beyond_the_log(&mut self, found: &[Effect]) -> BTreeMap<Effect, Refusal> {
         let of_the_curve: &[Effect] = &[Effect::SensorGain, Effect::SensorNonlinearity];
         let of_the_speed: &[Effect] = &[Effect::Viscous, Effect::Stribeck, Effect::ViscousNonlinearity];
-        let has_one_load = !self.bench.knows_load(self.noise_n);
+        let model = self.fit(found);
+        let is_zero_open = is_one_load(&self.bench.problem(&[], None), &model.values);
+        let has_one_load = is_zero_open || !self.bench.knows_load(self.noise_n);
+        let is_beside_gain = is_zero_open && model.free.iter().any(is_gain);
         let has_one_speed = has_one_speed(&self.bench.record);
-        let open = [(has_one_load, of_the_curve, OFFSET), (has_one_speed, of_the_speed, MU)];
+        let open = [
+            (has_one_load, of_the_curve, OFFSET),
+            (is_beside_gain, &[Effect::SensorOffset][..], GAIN),
+            (has_one_speed, of_the_speed, MU),
+        ];
         let effects = open.into_iter().filter(|(is_open, ..)| *is_open).flat_map(|(_, effects, place)| {
             let from = Parameter::all().find(|of| of.place() == place);
             effects.iter().filter_map(move |effect| Some((*effect, Refusal::Open(from?))))
@@ -293,8 +307,11 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Returns the candidates that are never tried: those beyond the log, and those that by the reported intervals may not be there.
-    fn excluded(&self) -> BTreeMap<Effect, Refusal> {
-        self.beyond_the_log().into_iter().chain(self.absent.iter().map(|effect| (*effect, Refusal::Absent))).collect()
+    fn excluded(&mut self, found: &[Effect]) -> BTreeMap<Effect, Refusal> {
+        self.beyond_the_log(found)
+            .into_iter()
+            .chain(self.absent.iter().map(|effect| (*effect, Refusal::Absent)))
+            .collect()
     }
 
     /// Adds candidates and tests whether they can stay, until nothing changes. A candidate that cannot stay is set aside, and the next one is tried.
@@ -398,7 +415,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
         let without = self.fit(&others);
         // An effect that the log cannot distinguish from it is another name for it.
-        let beyond = self.beyond_the_log();
+        let beyond = self.beyond_the_log(found);
         let mut rivals = self.round(&others);
         let cycle_s = self.bench.record.cycle_s;
         rivals.retain(|(other, trial)| {

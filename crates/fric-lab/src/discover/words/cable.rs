@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use fric_core::effects::Effect;
 
+use crate::certainty::one_load::is_gain;
 use crate::discover::Verdict;
 use crate::discover::rest::places::LEAST_CONCENTRATION;
 use crate::discover::result::{DiscoverCableResult, EffectResult, RevisedResult, UnexplainedResult, WhereResult};
-use crate::fit::HALF_INTERVAL;
+use crate::fit::{HALF_INTERVAL, Parameter};
 use crate::recording_fault::Fault;
 use crate::text::{listed, quantity, significant};
 use crate::words::{Times, condition, newtons, percent};
@@ -130,9 +131,19 @@ impl DiscoverCableResult {
     #[must_use]
     pub fn undetermined_in_words(&self) -> Option<String> {
         let values = self.values_of(&self.undetermined)?;
-        Some(format!(
-            "the log contradicts the given value but does not determine a better one; {values} is one of many that agree"
-        ))
+        let mut text = if self.undetermined.len() == 1 {
+            format!(
+                "the log contradicts the given value but does not determine a better one; {values} is one of many that agree"
+            )
+        } else {
+            format!(
+                "the log contradicts the given values but does not determine better ones; {values} are one choice of many that agree"
+            )
+        };
+        if self.undetermined.iter().filter_map(|name| Parameter::named(name)).any(|parameter| is_gain(&parameter)) {
+            text += ", because the load varies too little to tell a gain from a zero, which stays as given";
+        }
+        Some(text)
     }
 
     /// Returns which parameters of the file's effects the log has otherwise, as sentences without their full stops.
