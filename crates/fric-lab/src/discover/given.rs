@@ -38,8 +38,7 @@ pub fn fitted_to<'a>(record: &CableRecord<'a>, seat: Seat<'a>, stop: &'a AtomicB
 ///
 /// Free are the friction that acts, an offset if the file has one (the offset of a sensor that was not tared is to be found, not to be fitted away),
 /// and the parameters of the file's effects. The fit that gives the start values has an offset free. Beside it the log may not determine a parameter of an
-/// effect or μ, as a gain under one load, that it determines without: the file has no offset, so that this parameter is fitted like the others. The same holds
-/// for a viscous friction that the file does not have.
+/// effect, as a gain under one load, that it determines without: the file has no offset, so that this parameter is fitted like the others.
 pub fn given_model(
     record: &CableRecord<'_>,
     paper: &Solution,
@@ -49,9 +48,7 @@ pub fn given_model(
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
     let all = FitOptions::default().shared(record);
-    let is_beyond_file =
-        |parameter: &Parameter| [OFFSET, VISCOUS].contains(&parameter.place()) && !acts(parameter, &given);
-    let has_more = all.iter().any(is_beyond_file);
+    let has_other_zero = all.iter().any(|parameter| parameter.place() == OFFSET && !acts(parameter, &given));
     let acting = all.into_iter().filter(|parameter| acts(parameter, &given));
     let (mut held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
     let mut values = given;
@@ -61,12 +58,11 @@ pub fn given_model(
         }
     }
     let mut model = workbench::Model { values, free };
-    let is_tried = |parameter: &Parameter| !parameter.is_friction() || parameter.place() == MU;
-    let tried: Vec<Parameter> = held.iter().copied().filter(is_tried).collect();
-    if has_more && !tried.is_empty() {
+    let of_effects: Vec<Parameter> = held.iter().copied().filter(|parameter| !parameter.is_friction()).collect();
+    if has_other_zero && !of_effects.is_empty() {
         let blocks = split(record);
         let bench = Workbench { record: *record, blocks: &blocks, counts, measured: &[], stop };
-        let (trial, told) = determined_beside(&bench, &model, &tried);
+        let (trial, told) = determined_beside(&bench, &model, &of_effects);
         held.retain(|parameter| !told.contains(parameter));
         model.free.extend(told);
         for parameter in &model.free {
