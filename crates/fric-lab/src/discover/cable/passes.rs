@@ -302,10 +302,12 @@ impl CableLog<'_> {
         fitted
     }
 
-    /// Widens the errors of a model with a gain to those that it has with a zero of the sensor beside it: what is known of the gain rests on that zero.
+    /// Widens the errors of a model with a gain of the file to those that it has with a zero of the sensor beside it: what is known of the gain rests on that
+    /// zero. A gain that is named has shown itself.
     fn widen_beside_gain(&self, counts: &[bool], fitted: &mut Fitted) {
         let has_zero = self.bench(counts).has_zero(&fitted.parameters) || fitted.parameters.iter().any(is_zero);
-        if has_zero || !fitted.parameters.iter().any(is_gain) || !fitted.open.is_empty() {
+        let is_of_file = FitOptions::default().shared(&self.record).iter().any(is_gain);
+        if has_zero || !is_of_file || !fitted.parameters.iter().any(is_gain) || !fitted.open.is_empty() {
             return;
         }
         let count = fitted.parameters.len();

@@ -290,9 +290,9 @@ impl<'b, 'a> Search<'b, 'a> {
         let of_the_curve: &[Effect] = &[Effect::SensorGain, Effect::SensorNonlinearity];
         let of_the_speed: &[Effect] = &[Effect::Viscous, Effect::Stribeck, Effect::ViscousNonlinearity];
         let model = self.fit(found);
-        let is_zero_open = is_one_load(&self.bench.problem(&[], None), &model.values);
-        let has_one_load = is_zero_open || !self.bench.knows_load(self.noise_n);
-        let is_beside_gain = is_zero_open && model.free.iter().any(is_gain);
+        let has_one_load = !self.bench.knows_load(self.noise_n);
+        let is_beside_gain =
+            model.free.iter().any(is_gain) && is_one_load(&self.bench.problem(&[], None), &model.values);
         let has_one_speed = has_one_speed(&self.bench.record);
         let open = [
             (has_one_load, of_the_curve, OFFSET),
