@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Sample};
+use fric_lab::discover::readiness::by_forces;
 use fric_lab::discover::result::{DiscoverCableResult, DiscoverResult, EffectResult};
 use fric_lab::discover::{DiscoverOptions, Verdict, discover};
-use fric_lab::fit::readiness::{Holdings, to_discover};
+use fric_lab::fit::readiness::Holdings;
 use fric_lab::fit::{Measurements, Progress, Reference};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -61,7 +62,7 @@ fn look(bench: Bench, effects: &str) -> (DiscoverCableResult, String) {
         });
     }
     let found = discover(&measurements.into(), &DiscoverOptions::default(), &Progress::new()).unwrap();
-    let readiness = to_discover(&robot, &Holdings::new(1));
+    let readiness = by_forces(&robot, &Holdings::new(1));
     let mut result = DiscoverResult::new(&robot, &[("log".to_owned(), 0.0)], &readiness, &found);
     let summary = result.summary().split_whitespace().collect::<Vec<_>>().join(" ");
     (result.cables.remove(0), summary)
