@@ -53,7 +53,9 @@ pub fn given_model(
     let (mut held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
     let mut values = given;
     if let Some(found) = paper.values.first() {
-        for parameter in &free {
+        // Viscous friction that the file lacks may have taken the place of its Coulomb friction there.
+        let stays = |parameter: &Parameter| parameter.place() == MU && found[MU] <= 0.0;
+        for parameter in free.iter().filter(|parameter| !stays(parameter)) {
             values[parameter.place()] = found[parameter.place()];
         }
     }

@@ -1,7 +1,7 @@
 //! Identification of each cable separately, from the force measured at its platform end (\[P\] 18).
 
 use fric_core::LANES;
-use fric_core::parameters::{MU, OFFSET, SIGMA, Values};
+use fric_core::parameters::{MU, OFFSET, SIGMA, VISCOUS, Values};
 use std::panic::resume_unwind;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -158,10 +158,8 @@ impl<'a> Search<'a> {
         if let Some(parameter) = options.zero_beside_gain(record).filter(|_| !solution.unknowns.is_empty()) {
             let judged = Problem { used: used(&standings), ..problem.clone() };
             if solution.values.first().is_some_and(|values| is_one_load(&judged, values)) {
-                problem.members.iter_mut().for_each(|member| member.free.retain(|free| *free != parameter));
-                (start, solution, standings) = solved(&problem, record, all, options);
-                solution.undetermined.push(Unknown { member: 0, parameter });
-                solution.open.extend(one_load::combination(&problem, parameter, &solution));
+                (start, solution, standings) =
+                    solved_beside_gain(&mut problem, parameter, solution, (record, all, options));
             }
         }
         if let Some(parameter) = options.open_zero(record).filter(|_| !solution.unknowns.is_empty()) {
@@ -217,6 +215,27 @@ fn solved(
         (solution, standings) = solve_without_warm_up(vec![solution.values]);
         solution.evaluation_count += evaluation_count;
     }
+    (start, solution, standings)
+}
+
+/// Solves the problem of one cable again with a zero as given that one load does not tell from the gain beside it. Viscous friction that was left open beside
+/// the zero stays so: what tells it now is the noise, which the gain makes less of.
+fn solved_beside_gain(
+    problem: &mut Problem<'_>,
+    zero: Parameter,
+    before: Solution,
+    (record, all, options): (&CableRecord<'_>, &[Standing], &FitOptions),
+) -> (Values, Solution, Vec<Standing>) {
+    let held = before.undetermined.into_iter().zip(before.open);
+    let viscous = held.filter(|(held, _)| held.parameter.place() == VISCOUS);
+    let (undetermined, open): (Vec<Unknown>, Vec<OpenCombination>) = viscous.unzip();
+    let is_held = |free: &Parameter| *free == zero || undetermined.iter().any(|held| held.parameter == *free);
+    problem.members.iter_mut().for_each(|member| member.free.retain(|free| !is_held(free)));
+    let (start, mut solution, standings) = solved(problem, record, all, options);
+    solution.undetermined.extend(undetermined);
+    solution.open.extend(open);
+    solution.undetermined.push(Unknown { member: 0, parameter: zero });
+    solution.open.extend(one_load::combination(problem, zero, &solution));
     (start, solution, standings)
 }
 

@@ -251,27 +251,31 @@ impl CableLog<'_> {
                 parameters.retain(|parameter| !is_zero(parameter));
             }
             // What these samples do not determine stays in the file as it was, unless they contradict that. The model that is judged has it so too.
-            let as_given = |fitted: Fitted, parameters: &[Parameter], is_held: &dyn Fn(&Parameter) -> bool| {
-                let (mut start, mut is_changed) = (fitted.values, false);
-                for place in of_file.iter().filter(|parameter| is_held(parameter)).map(Parameter::place) {
-                    is_changed |= start[place].to_bits() != given[place].to_bits();
-                    start[place] = given[place];
+            let as_given = |fitted: Fitted, is_held: fn(&Parameter) -> bool| {
+                let (best, mut fitted, mut held) = (fitted.values, fitted, Vec::new());
+                loop {
+                    let stays = |of: &&Parameter| is_held(of) || !fitted.parameters.contains(of) || held.contains(*of);
+                    held = of_file.iter().filter(stays).copied().collect();
+                    let mut start = fitted.values;
+                    for place in held.iter().map(Parameter::place) {
+                        start[place] = given[place];
+                    }
+                    if start.map(f64::to_bits) == fitted.values.map(f64::to_bits) {
+                        return Some(fitted);
+                    }
+                    let free = parameters.iter().filter(|parameter| !held.contains(parameter)).copied().collect();
+                    let next = solved(&start, free)?;
+                    if contradicts(&problem, &[next.values], &problem, &[best]) {
+                        return Some(fitted);
+                    }
+                    fitted = next;
                 }
-                if !is_changed {
-                    return Some(fitted);
-                }
-                let is_left = |parameter: &&Parameter| !of_file.contains(parameter) || !is_held(parameter);
-                let held = solved(&start, parameters.iter().filter(is_left).copied().collect())?;
-                Some(if contradicts(&problem, &[held.values], &problem, &[fitted.values]) { fitted } else { held })
             };
-            let fitted = solved(&model.values, parameters.clone())?;
-            let determined = fitted.parameters.clone();
-            let fitted = as_given(fitted, &parameters, &|parameter| !determined.contains(parameter))?;
+            let fitted = as_given(solved(&model.values, parameters.clone())?, |_| false)?;
             if !is_gain_open {
                 return Some(fitted);
             }
-            let determined = fitted.parameters.clone();
-            let mut fitted = as_given(fitted, &determined, &is_gain)?;
+            let mut fitted = as_given(fitted, is_gain)?;
             if fitted.parameters.iter().any(is_gain) {
                 let changes = |parameter: &&Parameter| parameter.is_friction() || is_gain(parameter);
                 fitted.open = fitted.parameters.iter().filter(changes).copied().collect();
