@@ -15,6 +15,7 @@ const MU: f64 = 0.03;
 const SIGMA_N_PER_M: f64 = 1e4;
 const NOISE_N: f64 = 0.05;
 const CYCLE_S: f64 = 0.002;
+const FILTER_S: f64 = 0.006;
 
 /// The moment of a log.
 struct Moment {
@@ -23,6 +24,8 @@ struct Moment {
     place: f64,
     /// What a drift of standard deviation 1 and a correlation time of 1 s has come to.
     drift: f64,
+    /// Noise of standard deviation 1 behind a filter of [`FILTER_S`].
+    smoothed: f64,
 }
 
 /// Looks at a log in which friction is greater by a factor, and the reference by a force, N, and measured in some of the cycles.
@@ -37,7 +40,8 @@ fn look(factor: fn(&Moment) -> f64, added_n: fn(&Moment) -> f64, is_measured: fn
     measurements.start_log();
     let mut random = ChaCha8Rng::seed_from_u64(31);
     let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
-    let (mut held_n, mut force_n, mut drift, mut last_m) = (0.0_f64, 50.0_f64, 0.0_f64, 1.0);
+    let mut smooth = ChaCha8Rng::seed_from_u64(32);
+    let (mut held_n, mut force_n, mut drift, mut smoothed, mut last_m) = (0.0_f64, 50.0_f64, 0.0_f64, 0.0_f64, 1.0);
     for cycle in 0..20_000_i32 {
         let time_s = CYCLE_S * f64::from(cycle);
         let place = (TAU * time_s / 3.1).sin() * (0.6 + 0.4 * (TAU * time_s / 17.0).cos());
@@ -45,7 +49,9 @@ fn look(factor: fn(&Moment) -> f64, added_n: fn(&Moment) -> f64, is_measured: fn
         let way_m = length_m - std::mem::replace(&mut last_m, length_m);
         let load_n = 50.0 + 12.0 * (TAU * time_s / 5.7).sin() + 4.0 * (TAU * time_s / 1.9).sin();
         drift += -drift * CYCLE_S + (2.0 * CYCLE_S).sqrt() * normal();
-        let moment = Moment { time_s, place, drift };
+        let (kept, fresh): (f64, f64) = ((-CYCLE_S / FILTER_S).exp(), StandardNormal.sample(&mut smooth));
+        smoothed = kept * smoothed + (1.0 - kept * kept).sqrt() * fresh;
+        let moment = Moment { time_s, place, drift, smoothed };
         // Over half a turn the cable presses with the sum of both forces; a bristle deflects with the way until it holds as much as friction can.
         let greatest_n = MU * factor(&moment) * (load_n + force_n);
         held_n = greatest_n * way_m.signum()
@@ -80,6 +86,21 @@ fn assert_verdict(found: &CableDiscovery, verdict: Verdict) {
 #[test]
 fn a_drift_is_noise() {
     assert_told(|_| 1.0, |moment| 0.1 * moment.drift, Verdict::Complete);
+}
+
+/// Four times the white noise of both sensors.
+#[test]
+fn noise_that_an_amplifier_smooths_is_noise() {
+    let found = look(|_| 1.0, |moment| 0.3 * moment.smoothed, |_| true);
+    assert_verdict(&found, Verdict::Complete);
+    assert!((found.noise_floor_n.hypot(found.wander_n) / 0.3_f64.hypot(2.0_f64.sqrt() * NOISE_N) - 1.0).abs() < 0.05);
+}
+
+/// A chatter of the same spectrum, in the quick half of the strokes.
+#[test]
+fn what_is_loud_in_motion_is_no_noise() {
+    let chatter_n = |moment: &Moment| if moment.place.abs() < 0.4 { 0.4 * moment.smoothed } else { 0.0 };
+    assert_told(|_| 1.0, chatter_n, Verdict::Unexplained);
 }
 
 /// Where nothing is measured, nothing is known; that is no silence.
