@@ -190,7 +190,7 @@ pub struct OpenPartResult {
     pub cable: String,
     /// Its name.
     pub parameter: String,
-    /// Its part of a step of 1.96 standard errors, in its unit; of a zero that motion one way leaves open, of a step as large as takes all friction for a zero; of one that a load leaves open beside a gain, the whole gain.
+    /// Its part of a step of 1.96 standard errors, in its unit; of a zero that motion one way leaves open, of a step as large as takes all friction for a zero; of a zero that one load leaves open beside a gain, of a step that takes all of the gain for a zero.
     pub step: f64,
 }
 

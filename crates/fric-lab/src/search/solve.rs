@@ -66,7 +66,7 @@ pub struct OpenPart {
     /// The parameter.
     pub parameter: Parameter,
     /// Its part of a step of 1.96 standard errors, in its unit; not finite for a parameter that has no effect at all. Of a zero that motion one way leaves
-    /// open, of a step as large as takes all friction for a zero; of one that a load leaves open beside a gain, the whole gain.
+    /// open, of a step as large as takes all friction for a zero; of a zero that one load leaves open beside a gain, of a step that takes all of the gain for a zero.
     pub step: f64,
 }
 
