@@ -19,7 +19,7 @@ MIRI_TARGET := riscv64gc-unknown-linux-gnu
 STEPS := tools format lint test-rust docs
 PAIRED := test-python miri instructions bare-metal
 
-.PHONY: test check format lint test-rust docs test-python instructions bare-metal miri bench install install-cli tools coverage notices deny book
+.PHONY: test soak check format lint test-rust docs test-python instructions bare-metal miri bench install install-cli tools coverage notices deny book
 .PHONY: wheel release platforms python-package
 
 # Cargo would look for the job server of a make that runs two steps at a time, which only a sub-make may use.
@@ -31,6 +31,13 @@ test:
 	for step in $(STEPS); do timed $$step $$step; done; \
 	timed "$(PAIRED), two at a time:" --jobs=2 --output-sync=target $(PAIRED); \
 	printf "\nseconds of each step\n$$times"
+
+# What takes too long for every change, an hour or so: the tests marked for it, and random robots in random motion (see ASSURANCE.md).
+SOAK_CYCLES ?= 100000000
+soak: tools
+	$(CARGO) test --workspace --quiet -- --ignored
+	$(CARGO) run --release --quiet -p fric-core --example soak -- $(SOAK_CYCLES) 1 2
+	$(CARGO) run --release --quiet -p fric-core --example soak -- $(SOAK_CYCLES) 1 2 adversary
 
 # While working: formatting, lints and the tests within the crates, without those that run whole programs or long simulations.
 check: format lint

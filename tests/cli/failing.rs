@@ -1,6 +1,6 @@
 //! Every write, read, opening, renaming and allocation of a run fails once: nothing is half written, one sentence says why.
 //!
-//! `failing.c`, loaded into the program, counts the calls of a kind and makes the n-th fail; n goes up to the last one.
+//! `failing.c`, loaded into the program, counts the calls of a kind and makes the n-th fail. `make soak` lets n go through all of them.
 #![cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
 
 use std::collections::BTreeMap;
@@ -281,12 +281,31 @@ fn fail_each(kind: &str, pick: impl Fn(u64) -> Vec<u64>) {
     }
 }
 
+/// The first calls, later ones ever farther apart, and the last one.
+fn some(calls: u64) -> Vec<u64> {
+    let later = std::iter::successors(Some(4), |n| Some(n + n.div_ceil(2))).take_while(|n| *n < calls);
+    (1..=calls.min(3)).chain(later).chain((calls > 3).then_some(calls)).collect()
+}
+
 fn every(calls: u64) -> Vec<u64> {
     (1..=calls).collect()
 }
 
+/// There are thousands of allocations: each of the first 50, then every tenth more, by which the later ones are farther apart.
+fn each_tenth_more(calls: u64) -> Vec<u64> {
+    let later = std::iter::successors(Some(55), |n| Some(n + n / 10)).take_while(|n| *n <= calls);
+    (1..=50).chain(later).collect()
+}
+
 #[test]
 fn a_write_that_fails_leaves_nothing_half() {
+    fail_each("write", some);
+    fail_each("short", some);
+}
+
+#[test]
+#[ignore = "minutes; `make soak` runs it"]
+fn every_write_that_fails_leaves_nothing_half() {
     fail_each("write", every);
     fail_each("short", every);
 }
@@ -301,15 +320,25 @@ fn an_output_that_cannot_be_put_in_its_place_is_told() {
 #[test]
 fn a_read_that_fails_is_told() {
     for kind in ["read", "open", "look"] {
+        fail_each(kind, some);
+    }
+}
+
+#[test]
+#[ignore = "minutes; `make soak` runs it"]
+fn every_read_that_fails_is_told() {
+    for kind in ["read", "open", "look"] {
         fail_each(kind, every);
     }
 }
 
-/// There are thousands: each of the first 50, then every tenth more, by which the later ones are farther apart.
 #[test]
 fn an_allocation_that_is_refused_leaves_nothing_half() {
-    fail_each("memory", |calls| {
-        let later = std::iter::successors(Some(55), |n| Some(n + n / 10)).take_while(|n| *n <= calls);
-        (1..=50).chain(later).collect()
-    });
+    fail_each("memory", some);
+}
+
+#[test]
+#[ignore = "minutes; `make soak` runs it"]
+fn most_allocations_that_are_refused_leave_nothing_half() {
+    fail_each("memory", each_tenth_more);
 }

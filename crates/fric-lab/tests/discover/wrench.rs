@@ -101,6 +101,7 @@ fn a_wrong_mass_is_no_friction() {
 
 /// The gains of all sensors together would explain both.
 #[test]
+#[ignore = "minutes; `make soak` runs it"]
 fn a_wrong_mass_is_told_beside_a_wrong_gain() {
     let truth = robot(|text| {
         text.replacen("\nfriction =", "\neffects = [{ kind = \"sensor_gain\", gain = 1.06 }]\nfriction =", 1)
@@ -187,6 +188,7 @@ fn look_under(force_n: impl Fn(f64, [f64; 3]) -> [f64; 3], seed: u64) -> WrenchD
 
 /// A force that comes and goes looks like noise to the whitening.
 #[test]
+#[ignore = "minutes; `make soak` runs it"]
 fn a_gust_that_the_log_lacks_is_no_noise() {
     let gusts = |time_s: f64, _: [f64; 3]| {
         let blows = (3.0..5.0).contains(&time_s) || (7.0..8.5).contains(&time_s);
@@ -199,6 +201,7 @@ fn a_gust_that_the_log_lacks_is_no_noise() {
 
 /// A force that goes with the position looks like a wrong point of a cable, which the lengths contradict.
 #[test]
+#[ignore = "minutes; `make soak` runs it"]
 fn a_hose_that_the_log_lacks_is_no_wrong_point() {
     let found = look_under(|_, [x_m, y_m, z_m]| [-8.0 * x_m, -8.0 * y_m, -2.0 - 8.0 * z_m], 22);
     assert!(found.geometry.iter().all(|of| of.geometry.cable().is_none()), "{:?}", found.geometry);

@@ -12,8 +12,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
-/// Points for each of the robots.
-const POINTS: u32 = 250;
 const SAMPLES: u32 = 160;
 /// Agreement of central difference and derivative, relative to the parameter's greatest derivative in the record.
 const AGREEMENT: f64 = 1e-6;
@@ -158,8 +156,8 @@ fn check(record: &CableRecord<'_>, function: &ResidualFunction, values: &[f64], 
 
 const BOTH: &str = "{ kind = \"stribeck\", ratio = 0.3 }, { kind = \"time_delay\", delay_s = 0.004 }";
 
-#[test]
-fn jacobian_is_the_central_difference_at_a_thousand_points() {
+/// Checks the derivatives of four robots, each at so many random points.
+fn check_at_random_points(of_each: u32) {
     let robots = [
         ("per_pulley", "{ wrap_deg = 180.0, sensor = true }, { wrap_deg = 90.0 }, { wrap_deg = 60.0 }", 0.5),
         ("per_pulley", "{ wrap_deg = 90.0 }, { wrap_deg = 120.0 }", 1.0),
@@ -171,7 +169,7 @@ fn jacobian_is_the_central_difference_at_a_thousand_points() {
     for (presliding, pulleys, gain) in robots {
         let robot = robot(presliding, pulleys, BOTH);
         let mut of_robot = 0;
-        while of_robot < POINTS {
+        while of_robot < of_each {
             let measurements = random_record(&robot, gain, &mut random);
             let record = measurements.cable(0).unwrap();
             let function = ResidualFunction::new(&record, &FitOptions::default());
@@ -195,8 +193,18 @@ fn jacobian_is_the_central_difference_at_a_thousand_points() {
         }
     }
     println!("{points} points, {left_out} at a kink; worst of the others {worst:e}");
-    assert_eq!(points, 1000);
-    assert!(left_out <= 30, "{left_out}");
+    assert!(100 * left_out <= 3 * points, "{left_out} of {points}");
+}
+
+#[test]
+fn jacobian_is_the_central_difference() {
+    check_at_random_points(50);
+}
+
+#[test]
+#[ignore = "minutes; `make soak` runs it"]
+fn jacobian_is_the_central_difference_at_a_thousand_points() {
+    check_at_random_points(250);
 }
 
 /// Every parameter of the catalogue, the settings too, each effect among a third of the others; then each by itself at its neutral value, where a

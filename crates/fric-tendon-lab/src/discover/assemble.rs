@@ -68,7 +68,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], faults: &[GoesW
         parameters: Some(place_of(tried.effect)),
         evidence: evidence(tried.delta_bic, Some(tried.rms_n)),
         reason: tried.reason.clone(),
-        is_within_noise: false,
+        refusal: None,
     };
     let mut tried: Vec<&Tried> = tried.iter().collect();
     tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));

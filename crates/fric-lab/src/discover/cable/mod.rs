@@ -1,6 +1,7 @@
 //! Discovery on one cable: takes its record and returns everything that was found.
 
 mod assemble;
+mod final_fit;
 mod passes;
 
 use std::sync::atomic::AtomicBool;

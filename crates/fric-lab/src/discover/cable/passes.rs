@@ -1,26 +1,22 @@
 //! The passes over one cable: fit, name what is missing, fit the extended model, assess what is left, and start again from there.
 
 use fric_core::effects::Effect;
-use fric_core::parameters::{OFFSET, Values};
-use nalgebra::DMatrix;
 
+use super::final_fit::Fitted;
 use super::{BELIEVED_RATIO, CableLog};
 use crate::candidates::catalogue as candidates;
 use crate::certainty::assumed;
-use crate::certainty::one_load::{is_gain, is_one_load, is_zero};
-use crate::certainty::undetermined::reported_covariance;
 use crate::discover::effort::Effort;
-use crate::discover::given::{acts, determined_beside};
+use crate::discover::given::determined_beside;
 use crate::discover::naming::{Naming, Search};
 use crate::discover::rest::places::Place;
 use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
 use crate::discover::rest::{WORTH, wander};
 use crate::discover::workbench::{self, Trial, Workbench};
-use crate::fit::{FitOptions, HALF_INTERVAL, Parameter};
+use crate::fit::{HALF_INTERVAL, Parameter};
 use crate::samples::noise::white_noise_apart;
-use crate::samples::selection::Standing;
 use crate::search::problem::Problem;
-use crate::search::solve::{Solution, Unknown, contradicts, squares};
+use crate::search::solve::squares;
 
 /// Maximum number of passes over a cable. Each pass starts from what the previous one found.
 const MOST_PASSES: usize = 3;
@@ -44,25 +40,6 @@ impl Outcome {
     /// Whether the search had to come to an end, so that no further pass begins but one with parameters that only the names have made known.
     pub(super) fn is_cut_short(&self) -> bool {
         self.effort.is_spent(self.naming.named.len())
-    }
-}
-
-/// A model fitted to all samples.
-#[derive(Clone)]
-pub(super) struct Fitted {
-    pub(super) values: Values,
-    pub(super) parameters: Vec<Parameter>,
-    /// Parameters that the samples do not determine.
-    undetermined: Vec<Unknown>,
-    /// Parameters among those that were fitted whose values are one choice of many, of which the given one is none: a gain under one load, and the friction
-    /// that changes with it.
-    pub(super) open: Vec<Parameter>,
-    pub(super) covariance: DMatrix<f64>,
-}
-
-impl Fitted {
-    pub(super) fn model(&self) -> workbench::Model {
-        workbench::Model { values: self.values, free: self.parameters.clone() }
     }
 }
 
@@ -215,111 +192,6 @@ impl CableLog<'_> {
             stretch,
             residual_n,
         })
-    }
-
-    /// Fits the model with everything found to all samples that count, as an identification of the extended robot file does. Friction that is neither
-    /// in the file nor found stays out. An offset that is larger than chance stays out too, because naming has refused it.
-    pub(super) fn fitted(&self, counts: &[bool], model: &Trial, noise_n: f64) -> Fitted {
-        let given = self.record.params.values();
-        // What the log did not determine stays as given: beside a model that lacks something it would stand for that.
-        let is_known = |parameter: &Parameter| {
-            let is_free = model.free.contains(parameter) || !acts(parameter, &given);
-            !parameter.is_friction() || is_free && (acts(parameter, &model.values) || acts(parameter, &given))
-        };
-        let left_out = self.counts.iter().zip(counts).map(|(all, counts)| *all && !counts);
-        let standing = |(standing, left_out)| if left_out { Standing::Flagged } else { standing };
-        let standings: Vec<Standing> = self.standings.iter().copied().zip(left_out).map(standing).collect();
-        let solved = |start: &Values, parameters: Vec<Parameter>| {
-            let params = self.record.params.with_values(start).ok()?;
-            let record = self.record.with_params(&params);
-            let options = FitOptions { parameters: Some(parameters), ..FitOptions::default() };
-            let gang = crate::search::gang::Gang::new(1, self.stop);
-            let solution =
-                crate::fit::cables::Search::run(&record, &standings, &options, self.stop, gang.seat(0)).solution;
-            let parameters = solution.unknowns.iter().map(|unknown| unknown.parameter).collect();
-            let Solution { values, undetermined, covariance, .. } = solution;
-            Some(Fitted { values: *values.first()?, parameters, undetermined, open: Vec::new(), covariance })
-        };
-        let of_file = FitOptions::default().shared(&self.record);
-        let of = |also: fn(&Parameter) -> bool| {
-            let params = self.record.params.with_values(&model.values).ok()?;
-            let mut parameters = FitOptions::default().shared(&self.record.with_params(&params));
-            parameters.retain(|parameter| is_known(parameter) || also(parameter));
-            let problem = self.bench(counts).problem(&[], None);
-            let is_gain_open = of_file.iter().any(is_gain) && is_one_load(&problem, &model.values);
-            if is_gain_open {
-                parameters.retain(|parameter| !is_zero(parameter));
-            }
-            // What these samples do not determine stays in the file as it was, unless they contradict that. The model that is judged has it so too.
-            let as_given = |fitted: Fitted, is_held: fn(&Parameter) -> bool| {
-                let (best, mut fitted, mut held) = (fitted.values, fitted, Vec::new());
-                loop {
-                    let stays = |of: &&Parameter| is_held(of) || !fitted.parameters.contains(of) || held.contains(*of);
-                    held = of_file.iter().filter(stays).copied().collect();
-                    let mut start = fitted.values;
-                    for place in held.iter().map(Parameter::place) {
-                        start[place] = given[place];
-                    }
-                    if start.map(f64::to_bits) == fitted.values.map(f64::to_bits) {
-                        return Some(fitted);
-                    }
-                    let free = parameters.iter().filter(|parameter| !held.contains(parameter)).copied().collect();
-                    let next = solved(&start, free)?;
-                    if contradicts(&problem, &[next.values], &problem, &[best]) {
-                        return Some(fitted);
-                    }
-                    fitted = next;
-                }
-            };
-            let fitted = as_given(solved(&model.values, parameters.clone())?, |_| false)?;
-            if !is_gain_open {
-                return Some(fitted);
-            }
-            let mut fitted = as_given(fitted, is_gain)?;
-            if fitted.parameters.iter().any(is_gain) {
-                let changes = |parameter: &&Parameter| parameter.is_friction() || is_gain(parameter);
-                fitted.open = fitted.parameters.iter().filter(changes).copied().collect();
-            }
-            Some(fitted)
-        };
-        let has_chance_offset = |fitted: &Fitted| {
-            let place = fitted.parameters.iter().position(|parameter| parameter.place() == OFFSET);
-            let error_n = place.map_or(0.0, |place| fitted.covariance[(place, place)].sqrt());
-            // An offset that is known less well than a single sample stands in for something else.
-            let is_chance =
-                fitted.values[OFFSET].abs() <= HALF_INTERVAL * error_n && HALF_INTERVAL * error_n <= noise_n;
-            model.values[OFFSET].abs() > 0.0 || is_chance
-        };
-        let fitted = of(|parameter| parameter.place() == OFFSET).filter(has_chance_offset).or_else(|| of(|_| false));
-        let mut fitted = fitted.unwrap_or_else(|| {
-            let problem = self.bench(counts).problem(&model.free, None);
-            let covariance = crate::certainty::undetermined::covariance(&problem, &[model.values]);
-            Fitted {
-                values: model.values,
-                parameters: model.free.clone(),
-                undetermined: Vec::new(),
-                open: Vec::new(),
-                covariance,
-            }
-        });
-        self.widen_beside_gain(counts, &mut fitted);
-        fitted
-    }
-
-    /// Widens the errors of a model with a gain of the file to those that it has with a zero of the sensor beside it: what is known of the gain rests on that
-    /// zero. A gain that is named has shown itself.
-    fn widen_beside_gain(&self, counts: &[bool], fitted: &mut Fitted) {
-        let has_zero = self.bench(counts).has_zero(&fitted.parameters) || fitted.parameters.iter().any(is_zero);
-        let is_of_file = FitOptions::default().shared(&self.record).iter().any(is_gain);
-        if has_zero || !is_of_file || !fitted.parameters.iter().any(is_gain) || !fitted.open.is_empty() {
-            return;
-        }
-        let count = fitted.parameters.len();
-        let zero = Parameter::of(Effect::SensorOffset);
-        let free: Vec<Parameter> = fitted.parameters.iter().copied().chain(zero).collect();
-        let problem = Problem { used: counts.to_vec(), ..self.bench(counts).problem(&free, None) };
-        let covariance = reported_covariance(&problem, &[fitted.values], &fitted.undetermined);
-        fitted.covariance = covariance.view((0, 0), (count, count)).into_owned();
     }
 
     /// Returns which of the held parameters the log determines once the model has the first of the effects that were missing, or the first two, and so on:

@@ -14,14 +14,18 @@
 
 mod entry;
 pub mod evidence;
+mod exchange;
 mod fits;
 pub mod justification;
 mod late;
 mod one_load;
+mod outcome;
 pub mod projection;
+mod refusal;
 mod rivals;
 mod steadiness;
 mod together;
+mod tried;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,18 +35,19 @@ use fric_core::effects::sensor_gain::GAIN;
 use fric_core::parameters::{MU, OFFSET, Values};
 
 use self::entry::LAST_TURNS;
-use self::evidence::{delta_bic, inflation};
-use self::fits::gains;
-use self::justification::is_at_end;
+use self::evidence::delta_bic;
 use super::effort::Effort;
 use super::lack::has_one_speed;
 use super::workbench::{Trial, Workbench};
-use crate::candidates::catalogue::{fitted, has};
+use crate::candidates::catalogue::has;
 use crate::certainty::one_load::{is_gain, is_one_load};
 use crate::effects::Around;
 use crate::fit::Parameter;
 use crate::samples::conditions::Condition;
 use crate::samples::noise::VARIANCE_ERROR;
+
+pub use outcome::{Named, Naming, Tried};
+pub use refusal::Refusal;
 
 /// Minimum fraction of the remaining squares above the noise that a candidate must remove to enter.
 pub const LEAST_GAIN: f64 = 0.02;
@@ -55,118 +60,12 @@ pub const NEGLIGIBLE: f64 = 0.01;
 /// Minimum ΔBIC to keep an effect, and to prefer one name over another. 10 would suffice if the memory of the residual were known. Under drifting
 /// noise, the best of a dozen candidates reaches nearly 30 by chance.
 pub const STRONG_BIC: f64 = 30.0;
-/// A rival that leaves less than this fraction of the noise's squares makes less of the noise, not of the error: a gain of 0.7 and less.
-const LEAST_NOISE_RATIO: f64 = 0.5;
 /// Maximum number of rounds of entering, exchanging and justifying, and of passes in which everything that was refused is tried again.
 const ROUNDS: usize = 8;
 const PASSES: usize = 2;
 
 /// A set of effects, sorted.
 type Set = Vec<Effect>;
-
-/// An effect in a model with its evidence.
-#[derive(Clone, Debug)]
-pub struct Named {
-    /// The effect.
-    pub effect: Effect,
-    /// The model with the effect in which it was judged.
-    pub with: Trial,
-    /// The model without the effect, fitted again.
-    pub without: Trial,
-    /// The best other effect in its place.
-    pub runner_up: Option<(Effect, Trial)>,
-    /// Whether that explains as much although its BIC is worse: a lag of the sensor, seen behind the lag, or what goes with the load in the place
-    /// of a zero, under one load.
-    pub is_as_good: bool,
-    /// Factor by which memory in the residual weakens the evidence, at least 1.
-    pub inflation: f64,
-    /// The reason why the effect cannot stay.
-    refusal: Option<Refusal>,
-}
-
-/// The reason why a candidate that helps is not named.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Refusal {
-    /// The evidence is weaker than what chance produces.
-    Weak,
-    /// The effect removes so little of what is left that the model error of another effect can look like it.
-    Small,
-    /// The search ended before it could judge the effect.
-    Unjudged,
-    /// A parameter is stuck at the bound of its range.
-    AtBound,
-    /// The intervals of its parameters hold the values at which it does nothing.
-    Absent,
-    /// What is left without it is no more than noise, as far as the log shows the noise.
-    WithinNoise,
-    /// The log cannot distinguish the effect from this parameter.
-    Open(Parameter),
-    /// The effect's size differs between operating conditions of this name, so something else is mistaken for it.
-    Unsteady(&'static str),
-    /// An unnamed law over this signal explains more in the effect's place and leaves it little to explain.
-    StandsIn(&'static str),
-    /// The effect is no stronger than in robots without it.
-    Usual,
-    /// The effect explains no more than this other effect does at a typical size.
-    UsualInstead(Effect),
-    /// A gain with an offset explains as much as the curve of the sensor.
-    Straight,
-    /// The rest would vanish if the effect's size varied with this condition, so its law is a different one.
-    Bent(&'static str),
-    /// The lengths of the log contradict the correction of the robot file.
-    Contradicted,
-    /// Undoing the sensor's lag makes more noise than it explains.
-    Louder {
-        /// Time constant of the lag, s, as it shows behind a low-pass filter.
-        time_constant_s: f64,
-    },
-}
-
-/// The outcome of naming.
-#[derive(Clone, Debug)]
-pub struct Naming {
-    /// The model with all effects found.
-    pub model: Trial,
-    /// The effects found, in the order in which they entered.
-    pub named: Vec<Named>,
-    /// The models from the given one to the final one: one more than there are effects.
-    pub ladder: Vec<Trial>,
-    /// The first fit of every candidate beside the given model.
-    pub first_round: Vec<(Effect, Trial)>,
-    /// Candidates that improve the final model but do not suffice, the best first.
-    pub tried: Vec<Tried>,
-}
-
-impl Naming {
-    /// Returns the effects found.
-    pub fn effects(&self) -> Vec<Effect> {
-        self.named.iter().map(|named| named.effect).collect()
-    }
-
-    /// Returns this naming with what a search from its model has named beyond it.
-    pub fn followed_by(self, beyond: Self) -> Self {
-        Self {
-            model: beyond.model,
-            named: [self.named, beyond.named].concat(),
-            ladder: self.ladder.into_iter().chain(beyond.ladder.into_iter().skip(1)).collect(),
-            first_round: self.first_round,
-            tried: beyond.tried,
-        }
-    }
-}
-
-/// A candidate that helps but does not suffice.
-#[derive(Clone, Debug)]
-pub struct Tried {
-    /// The effect.
-    pub effect: Effect,
-    /// The model with the effect.
-    pub trial: Trial,
-    /// Factor by which memory in the residual weakens the evidence, at least 1.
-    pub inflation: f64,
-    /// The reason why it is not named.
-    pub refusal: Refusal,
-}
 
 /// The search on one cable. Every set of effects is fitted once.
 pub struct Search<'b, 'a> {
@@ -383,100 +282,6 @@ impl<'b, 'a> Search<'b, 'a> {
         #[expect(clippy::cast_precision_loss, reason = "counts")]
         let (count, more) = (self.bench.count(false) as f64 / inflation, SHARES as f64);
         delta_bic(count, with / without, more)
-    }
-
-    /// Tries every other effect in the place of each effect. Returns whether one was better.
-    fn exchange(&mut self, found: &mut [Effect]) -> bool {
-        let mut is_changed = false;
-        for place in 0..found.len() {
-            if self.is_spent(found) {
-                break;
-            }
-            let Some((other, trial)) = self.alternative(found, place) else { continue };
-            let model = self.fit(found);
-            let is_better = trial.training < model.training && trial.held_out < model.held_out;
-            // More parameters fit a little better anyway.
-            let memory = inflation(self.bench, &trial, &fitted(other));
-            if !self.refused.contains_key(&other) && is_better && self.delta_bic(&model, &trial, memory) < 0.0 {
-                found[place] = other;
-                is_changed = true;
-            }
-        }
-        self.renumber(found);
-        is_changed
-    }
-
-    /// Returns the best other effect in the place of one. Friction that every model has is not replaced.
-    fn alternative(&mut self, found: &[Effect], place: usize) -> Option<(Effect, Trial)> {
-        let effect = *found.get(place)?;
-        if effect.is_friction() {
-            return None;
-        }
-        let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
-        let without = self.fit(&others);
-        // An effect that the log cannot distinguish from it is another name for it.
-        let beyond = self.beyond_the_log(found);
-        let mut rivals = self.round(&others);
-        let cycle_s = self.bench.record.cycle_s;
-        rivals.retain(|(other, trial)| {
-            let is_refused = !beyond.contains_key(other) && self.refused.contains_key(other);
-            // Under one load a gain of nearly nothing agrees with it, and makes less of the noise too.
-            let is_trivial = trial.held_out < LEAST_NOISE_RATIO * self.noise_squares;
-            *other != effect && !is_refused && !is_trivial && !is_at_end(*other, &trial.values, cycle_s)
-        });
-        let memory = inflation(self.bench, &self.fit(found), &fitted(effect));
-        let evidence = |(_, trial): &(Effect, Trial)| self.delta_bic(&without, trial, memory);
-        let squares = |(_, trial): &(Effect, Trial)| trial.training;
-        rivals.into_iter().min_by(|one, other| {
-            evidence(one).total_cmp(&evidence(other)).then(squares(one).total_cmp(&squares(other)))
-        })
-    }
-
-    /// Returns the candidates that help a model but do not suffice, the best first. Where only the error of the noise's estimate leaves room for them,
-    /// these are the candidates with strong evidence.
-    fn tried(&mut self, found: &[Effect]) -> Vec<Tried> {
-        let model = self.fit(found);
-        let excess = self.excess(&model);
-        if excess <= NEGLIGIBLE - self.noise_error {
-            return Vec::new();
-        }
-        let is_within_noise = excess <= NEGLIGIBLE;
-        let least_evidence = if is_within_noise { -STRONG_BIC } else { 0.0 };
-        let (enough, cycle_s) = (self.least_gain(&model), self.bench.record.cycle_s);
-        let mut tried: Vec<Tried> = self
-            .round(found)
-            .into_iter()
-            .filter(|(_, trial)| trial.held_out < model.held_out && trial.training < model.training)
-            .map(|(effect, trial)| {
-                let inflation = inflation(self.bench, &trial, &fitted(effect));
-                let refusal = if is_at_end(effect, &trial.values, cycle_s) {
-                    Refusal::AtBound
-                } else if let Some(refusal) = self.refused.get(&effect) {
-                    *refusal
-                } else if self.delta_bic(&model, &trial, inflation) >= -STRONG_BIC {
-                    Refusal::Weak
-                } else if !gains(&model, &trial, enough) {
-                    Refusal::Small
-                } else if is_within_noise {
-                    Refusal::WithinNoise
-                } else {
-                    Refusal::Unjudged
-                };
-                Tried { effect, trial, inflation, refusal }
-            })
-            .filter(|tried| self.delta_bic(&model, &tried.trial, tried.inflation) < least_evidence)
-            .collect();
-        if !is_within_noise
-            && let Some(hidden) = self.hidden_lag(found)
-            && hidden.trial.training < model.training
-            && hidden.trial.held_out < model.held_out
-        {
-            tried.retain(|tried| tried.effect != hidden.effect);
-            tried.push(hidden);
-        }
-        let evidence = |tried: &Tried| self.delta_bic(&model, &tried.trial, tried.inflation);
-        tried.sort_by(|one, other| evidence(one).total_cmp(&evidence(other)));
-        tried
     }
 }
 

@@ -80,9 +80,9 @@ pub struct TriedResult {
     pub evidence: Evidence,
     /// The reason why it is not named, as a clause.
     pub reason: String,
-    /// Whether the evidence is strong, but the noise is not known well enough.
+    /// The same reason for an effect of a cable; `None` for a tendon's.
     #[serde(skip)]
-    pub is_within_noise: bool,
+    pub refusal: Option<Refusal>,
 }
 
 /// A single effect beside the given model.
@@ -146,7 +146,7 @@ impl TriedResult {
     pub(super) fn of(tried: &Tried) -> Self {
         let Tried { effect, delta_bic, held_out_rms_n, refusal } = tried;
         let evidence = Evidence { delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) };
-        let is_within_noise = *refusal == Refusal::WithinNoise;
-        Self { kind: effect.kind(), parameters: None, evidence, reason: refusal.in_words(), is_within_noise }
+        let (reason, refusal) = (refusal.in_words(), Some(*refusal));
+        Self { kind: effect.kind(), parameters: None, evidence, reason, refusal }
     }
 }

@@ -6,8 +6,11 @@ use fric_core::effects::Effect;
 
 use crate::certainty::one_load::is_gain;
 use crate::discover::Verdict;
+use crate::discover::naming::Refusal;
 use crate::discover::rest::places::LEAST_CONCENTRATION;
-use crate::discover::result::{DiscoverCableResult, EffectResult, RevisedResult, UnexplainedResult, WhereResult};
+use crate::discover::result::{
+    DiscoverCableResult, EffectResult, RevisedResult, TriedResult, UnexplainedResult, WhereResult,
+};
 use crate::fit::{HALF_INTERVAL, Parameter};
 use crate::recording_fault::Fault;
 use crate::text::{listed, quantity, significant};
@@ -190,7 +193,7 @@ impl DiscoverCableResult {
                 format!("The model lacks {}. Nothing of what is left of the wrench is told to be of this cable.", names(&all))
             }
             Verdict::Complete if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
-            Verdict::Complete if self.tried.iter().any(|tried| tried.is_within_noise) => {
+            Verdict::Complete if self.tried_and(Refusal::WithinNoise).is_some() => {
                 "With values fitted to the log, the model agrees with it to the noise, as far as the log shows what its noise is. \
                  A longer log would tell whether something small is missing."
                     .to_owned()
@@ -207,7 +210,13 @@ impl DiscoverCableResult {
                     all.iter().copied().filter(|effect| effect.effect != Effect::Empirical).collect();
                 let lacks =
                     if named.is_empty() { String::new() } else { format!("The model lacks {}. ", names(&named)) };
-                let rest = lacks + "Something remains that no effect of the catalogue accounts for.";
+                let rest = lacks + &match self.tried_and(Refusal::UsualRest) {
+                    Some(usual) => format!(
+                        "What remains is no more than the law of friction of a sound robot may differ from that of the model: \
+                         {} of a usual size would account for it.", usual.kind
+                    ),
+                    None => "Something remains that no effect of the catalogue accounts for.".to_owned(),
+                };
                 if named.len() == all.len() {
                     rest
                 } else {
@@ -224,6 +233,11 @@ impl DiscoverCableResult {
             text += " are left that go with nothing the cable does, as of an amplifier that smooths its noise or a zero that wanders.";
         }
         text
+    }
+
+    /// Returns the best candidate that is not named for this reason.
+    fn tried_and(&self, refusal: Refusal) -> Option<&TriedResult> {
+        self.tried.iter().find(|tried| tried.refusal == Some(refusal))
     }
 
     /// Returns the gap before and after, as a sentence without its full stop.

@@ -142,7 +142,7 @@ impl Refusal {
                 "a law without a name that goes with the {} explains more, and leaves little for it",
                 condition(signal)
             ),
-            Self::Usual => "it is no larger than on a sound robot".to_owned(),
+            Self::Usual | Self::UsualRest => "it is no larger than on a sound robot".to_owned(),
             Self::UsualInstead(usual) => {
                 format!("{} of a size that robots usually have leaves little for it to explain", usual.kind())
             }

@@ -1,0 +1,45 @@
+//! Why a candidate is not named.
+
+use fric_core::effects::Effect;
+
+use crate::fit::Parameter;
+
+/// The reason why a candidate that helps is not named.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refusal {
+    /// The evidence is weaker than what chance produces.
+    Weak,
+    /// The effect removes so little of what is left that the model error of another effect can look like it.
+    Small,
+    /// The search ended before it could judge the effect.
+    Unjudged,
+    /// A parameter is stuck at the bound of its range.
+    AtBound,
+    /// The intervals of its parameters hold the values at which it does nothing.
+    Absent,
+    /// What is left without it is no more than noise, as far as the log shows the noise.
+    WithinNoise,
+    /// The log cannot distinguish the effect from this parameter.
+    Open(Parameter),
+    /// The effect's size differs between operating conditions of this name, so something else is mistaken for it.
+    Unsteady(&'static str),
+    /// An unnamed law over this signal explains more in the effect's place and leaves it little to explain.
+    StandsIn(&'static str),
+    /// The effect is no stronger than in robots without it.
+    Usual,
+    /// The effect is no stronger than in robots without it, and accounts for nearly all that is left.
+    UsualRest,
+    /// The effect explains no more than this other effect does at a typical size.
+    UsualInstead(Effect),
+    /// A gain with an offset explains as much as the curve of the sensor.
+    Straight,
+    /// The rest would vanish if the effect's size varied with this condition, so its law is a different one.
+    Bent(&'static str),
+    /// The lengths of the log contradict the correction of the robot file.
+    Contradicted,
+    /// Undoing the sensor's lag makes more noise than it explains.
+    Louder {
+        /// Time constant of the lag, s, as it shows behind a low-pass filter.
+        time_constant_s: f64,
+    },
+}
