@@ -37,8 +37,10 @@ pub fn fitted_to<'a>(record: &CableRecord<'a>, seat: Seat<'a>, stop: &'a AtomicB
 /// Returns the given model with start values from the data, and the parameters that the log does not determine, which stay as given.
 ///
 /// Free are the friction that acts, an offset if the file has one (the offset of a sensor that was not tared is to be found, not to be fitted away),
-/// and the parameters of the file's effects. The fit that gives the start values has an offset free. Beside it the log may not determine a parameter of an
-/// effect, as a gain under one load, that it determines without: the file has no offset, so that this parameter is fitted like the others.
+/// and the parameters of the file's effects. The fit that gives the start values has an offset and all friction free. Beside the offset the log may not
+/// determine a parameter of an effect, as a gain under one load, that it determines without: the file has no offset, so that this parameter is fitted like the
+/// others. So is friction that the log determines beside an offset but not beside other friction that the file has not, as μ beside a viscous friction where
+/// each direction has one speed.
 pub fn given_model(
     record: &CableRecord<'_>,
     paper: &Solution,
@@ -48,7 +50,9 @@ pub fn given_model(
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
     let all = FitOptions::default().shared(record);
-    let has_other_zero = all.iter().any(|parameter| parameter.place() == OFFSET && !acts(parameter, &given));
+    let other = |is_wanted: fn(&Parameter) -> bool| all.iter().find(|of| is_wanted(of) && !acts(of, &given)).copied();
+    let (other_zero, other_friction) =
+        (other(|of| of.place() == OFFSET), other(|of| of.is_friction() && of.place() != OFFSET));
     let acting = all.into_iter().filter(|parameter| acts(parameter, &given));
     let (mut held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
     let mut values = given;
@@ -60,16 +64,23 @@ pub fn given_model(
         }
     }
     let mut model = workbench::Model { values, free };
-    let of_effects: Vec<Parameter> = held.iter().copied().filter(|parameter| !parameter.is_friction()).collect();
-    if has_other_zero && !of_effects.is_empty() {
-        let blocks = split(record);
-        let bench = Workbench { record: *record, blocks: &blocks, counts, measured: &[], stop };
-        let (trial, told) = determined_beside(&bench, &model, &of_effects);
+    let (of_friction, of_effects): (Vec<Parameter>, Vec<Parameter>) = held.iter().partition(|of| of.is_friction());
+    let blocks = split(record);
+    let bench = Workbench { record: *record, blocks: &blocks, counts, measured: &[], stop };
+    let mut fit_too = |beside: Option<Parameter>, candidates: &[Parameter]| {
+        let with = workbench::Model { free: model.free.iter().copied().chain(beside).collect(), ..model.clone() };
+        let (trial, told) = determined_beside(&bench, &with, candidates);
         held.retain(|parameter| !told.contains(parameter));
         model.free.extend(told);
         for parameter in &model.free {
             model.values[parameter.place()] = trial.values[parameter.place()];
         }
+    };
+    if other_friction.is_some() && !of_friction.is_empty() {
+        fit_too(other_zero, &of_friction);
+    }
+    if other_zero.is_some() && !of_effects.is_empty() {
+        fit_too(None, &of_effects);
     }
     (model, held)
 }

@@ -91,6 +91,8 @@ pub struct Tried {
     pub held_out_rms_n: f64,
     /// The reason why it is not named.
     pub refusal: Refusal,
+    /// Whether nearly all that is left goes with it.
+    pub takes_rest: bool,
 }
 
 /// A rest that no effect explains.

@@ -69,6 +69,7 @@ pub fn told(case: &Case<'_>, outcome: &Outcome, named: &[Named], faults: &[GoesW
         evidence: evidence(tried.delta_bic, Some(tried.rms_n)),
         reason: tried.reason.clone(),
         refusal: None,
+        takes_rest: false,
     };
     let mut tried: Vec<&Tried> = tried.iter().collect();
     tried.sort_by(|one, other| one.delta_bic.total_cmp(&other.delta_bic));

@@ -14,7 +14,7 @@ use crate::discover::Task;
 use crate::discover::figures::curve::curves;
 use crate::discover::figures::profile::profile;
 use crate::discover::given::given_to;
-use crate::discover::naming::{self, Named, Refusal, STRONG_BIC, Search};
+use crate::discover::naming::{self, Named, STRONG_BIC, Search};
 use crate::discover::report::{CableDiscovery, Candidate, Finding, Model, RunnerUp, Tried, Unexplained, Verdict};
 use crate::discover::rest::empirical::{Table, has_table, table, without_table};
 use crate::discover::rest::neighbours::neighbours_of;
@@ -32,11 +32,11 @@ use crate::search::problem::Problem;
 use crate::set_up::SetUp;
 
 impl CableLog<'_> {
-    /// Returns a table for a rest that has no name, unless an effect that sound robots have accounts for it.
+    /// Returns a table for a rest that has no name and may be no effect that is known.
     pub(super) fn table(&self, outcome: &Outcome, task: &Task<'_>) -> Result<Option<Table>, StoreError> {
         let Outcome { fitted, rest, stretch, .. } = outcome;
-        let is_usual = outcome.naming.tried.iter().any(|tried| tried.refusal == Refusal::UsualRest);
-        if rest.is_noise && stretch.is_none() || is_usual || has_table(&fitted.values) {
+        let is_known = outcome.naming.tried.iter().any(naming::Tried::may_be_rest);
+        if rest.is_noise && stretch.is_none() || is_known || has_table(&fitted.values) {
             return Ok(None);
         }
         let bench = self.bench(self.counts);
@@ -105,6 +105,7 @@ impl CableLog<'_> {
             delta_bic: search.delta_bic(&naming.model, &tried.trial, tried.inflation),
             held_out_rms_n: rms_n(&tried.trial),
             refusal: tried.refusal,
+            takes_rest: tried.takes_rest,
         };
         let tried = naming.tried.iter().map(of_tried).collect();
         let clean_n = self.bench(self.counts).residuals_n(&base.values);

@@ -8,7 +8,8 @@ use crate::candidates::catalogue as candidates;
 use crate::certainty::assumed;
 use crate::discover::effort::Effort;
 use crate::discover::given::determined_beside;
-use crate::discover::naming::{Naming, Search};
+use crate::discover::naming::justification::is_at_end;
+use crate::discover::naming::{Naming, Refusal, Search};
 use crate::discover::rest::places::Place;
 use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
 use crate::discover::rest::{WORTH, wander};
@@ -92,9 +93,10 @@ impl CableLog<'_> {
         let mut passes = 1;
         loop {
             let named = naming.effects();
-            if let Some(absent) = named.iter().find(|effect| self.may_be_absent(counts, &fitted, **effect)) {
-                search.refuse(*absent);
-                let others: Vec<Effect> = named.iter().copied().filter(|effect| effect != absent).collect();
+            let doubt = |effect: &Effect| Some((*effect, self.doubt(counts, &fitted, *effect)?));
+            if let Some((doubtful, refusal)) = named.iter().find_map(doubt) {
+                search.refuse(doubtful, refusal);
+                let others: Vec<Effect> = named.iter().copied().filter(|effect| *effect != doubtful).collect();
                 naming = search.run(&others);
                 fitted = self.fitted(counts, &naming.model, noise_n);
                 continue;
@@ -117,6 +119,14 @@ impl CableLog<'_> {
         }
         let rest = self.rest(&bench, &fitted.model(), self.least_n(&base))?;
         Some(Outcome { counts: counts.to_vec(), effort, base, naming, fitted, rest, stretch: None })
+    }
+
+    /// Returns the reason why an effect cannot stay by the values and intervals that are reported.
+    fn doubt(&self, counts: &[bool], fitted: &Fitted, effect: Effect) -> Option<Refusal> {
+        if is_at_end(effect, &fitted.values, self.record.cycle_s) {
+            return Some(Refusal::AtBound);
+        }
+        self.may_be_absent(counts, fitted, effect).then_some(Refusal::Absent)
     }
 
     /// Whether the intervals of the parameters that make an effect hold the values at which it does nothing. Parameters such as a speed, which do nothing

@@ -7,6 +7,7 @@ use super::evidence::inflation;
 use super::{LEAST_GAIN, LEAST_SIZE, Search, Set, set_of, without};
 use crate::candidates::catalogue::{fitted, has, starts};
 use crate::candidates::ripple::{period_of, periods};
+use crate::certainty::determined::NEGLIGIBLE_MU;
 use crate::discover::workbench::{Model, NEAR_ERRORS, Trial};
 use crate::effects::pulley_defect;
 use crate::fit::Parameter;
@@ -63,13 +64,14 @@ impl Search<'_, '_> {
             let residuals_n = self.bench.residuals_n(&model.values);
             self.around.periods = periods(&self.bench.record, &residuals_n);
         }
+        let from = self.with_friction(&model);
         let (mut models, mut owners) = (Vec::new(), Vec::new());
         for effect in unknown {
             let mut free = model.free.clone();
             free.extend(fitted(effect).into_iter().filter(|parameter| !model.free.contains(parameter)));
             let starts = match self.earlier.get(&with(&effect)) {
                 Some(earlier) => vec![start_from(earlier, effect, &model.values, &free)],
-                None => starts(effect, &model.values, &self.around, &self.bench.record),
+                None => starts(effect, &from, &self.around, &self.bench.record),
             };
             for values in starts {
                 models.push(Model { values, free: free.clone() });
@@ -103,6 +105,17 @@ impl Search<'_, '_> {
             .collect();
         self.refine(contenders.iter().map(with));
         candidates.iter().filter_map(|effect| Some((*effect, self.fits.get(&with(effect))?.clone()))).collect()
+    }
+
+    /// Returns the values of a model with the file's friction where it has none left: what it lacks may outweigh friction, and a search that starts without
+    /// any hardly comes back to it.
+    fn with_friction(&self, model: &Trial) -> Values {
+        let (mut values, given_mu) = (model.values, self.bench.record.params.values()[MU]);
+        let is_free = model.free.iter().any(|parameter| parameter.place() == MU);
+        if is_free && values[MU] <= NEGLIGIBLE_MU && given_mu > NEGLIGIBLE_MU {
+            values[MU] = given_mu;
+        }
+        values
     }
 
     /// Chooses the settings of the effects in a model again, such as the window of an acceleration: beside another effect another one may be best. The

@@ -67,8 +67,11 @@ impl Search<'_, '_> {
 
     /// Whether strong evidence for an effect is missing once another effect of a typical size is in the model.
     fn usual_instead(&mut self, found: &[Effect], effect: Effect, inflation: f64) -> Option<Refusal> {
+        // A zero and a gain are what such an effect degenerates to.
+        let is_straight = [Effect::SensorOffset, Effect::SensorGain].contains(&effect);
         let is_usual = |(other, refusal): (&Effect, &Refusal)| {
-            (*refusal == Refusal::Usual && !found.contains(other)).then_some(*other)
+            let counts = *refusal == Refusal::Usual || *refusal == Refusal::Degenerate && !is_straight;
+            (counts && !found.contains(other)).then_some(*other)
         };
         let usual: Vec<Effect> = self.refused.iter().filter_map(is_usual).collect();
         let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
@@ -126,7 +129,7 @@ impl Search<'_, '_> {
         }
         let lab = effects::of(effect)?;
         if !(lab.is_more_than_usual)(&model.values, &self.around) {
-            return Some(Refusal::Usual);
+            return Some(Refusal::usual(effect));
         }
         if let Some(other) = self.confused_with(model, effect) {
             return Some(Refusal::Open(other));

@@ -122,7 +122,13 @@ impl Search<'_, '_> {
             trial = fits.into_iter().min_by(|one, other| one.training.total_cmp(&other.training))?;
         }
         let inflation = inflation(self.bench, &trial, &trial.free);
-        Some(Tried { effect: Effect::SensorLag, trial, inflation, refusal: Refusal::Louder { time_constant_s } })
+        Some(Tried {
+            effect: Effect::SensorLag,
+            trial,
+            inflation,
+            refusal: Refusal::Louder { time_constant_s },
+            takes_rest: false,
+        })
     }
 
     /// Returns the sum of squares of residuals behind a low-pass filter, with the number of samples: of the training samples, and of the held-out ones.

@@ -86,8 +86,8 @@ pub struct Search<'b, 'a> {
     earlier: BTreeMap<Set, Trial>,
     /// Refused candidates and the reasons.
     refused: BTreeMap<Effect, Refusal>,
-    /// Candidates that stay refused.
-    absent: Vec<Effect>,
+    /// Candidates that stay refused, and the reasons.
+    excluded: BTreeMap<Effect, Refusal>,
     /// For effects in sets: the factor by which memory weakens the evidence, and the reason why the effect cannot stay.
     judged: BTreeMap<(Set, Effect), (f64, Option<Refusal>)>,
     /// Sets that no unnamed law makes superfluous.
@@ -121,7 +121,7 @@ impl<'b, 'a> Search<'b, 'a> {
             fits,
             earlier: BTreeMap::new(),
             refused: BTreeMap::new(),
-            absent: Vec::new(),
+            excluded: BTreeMap::new(),
             judged: BTreeMap::new(),
             unrivalled: BTreeSet::new(),
         }
@@ -135,13 +135,13 @@ impl<'b, 'a> Search<'b, 'a> {
             (set.iter().copied().filter(|effect| !found.contains(effect)).collect(), trial.clone())
         };
         let earlier = self.fits.iter().filter(is_beside).map(beside).collect();
-        let absent = self.absent.clone();
-        Self { earlier, absent, ..Self::new(self.bench, noise_n, around, base, self.conditions, self.effort) }
+        let excluded = self.excluded.clone();
+        Self { earlier, excluded, ..Self::new(self.bench, noise_n, around, base, self.conditions, self.effort) }
     }
 
-    /// Refuses an effect from now on: by the reported intervals it may not be there.
-    pub fn refuse(&mut self, absent: Effect) {
-        self.absent.push(absent);
+    /// Refuses an effect from now on.
+    pub fn refuse(&mut self, effect: Effect, refusal: Refusal) {
+        self.excluded.insert(effect, refusal);
     }
 
     /// Names the effects that the model lacks. Effects that were found before are in the model from the start and must justify themselves like the
@@ -154,7 +154,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut named = Vec::new();
         for _ in 0..PASSES {
             let before = set_of(&found);
-            self.refused = self.excluded(&found);
+            self.refused = self.never_tried(&found);
             named = self.pass(&mut found);
             if set_of(&found) == before || self.is_spent(&found) {
                 break;
@@ -205,12 +205,11 @@ impl<'b, 'a> Search<'b, 'a> {
         effects.collect()
     }
 
-    /// Returns the candidates that are never tried: those beyond the log, and those that by the reported intervals may not be there.
-    fn excluded(&mut self, found: &[Effect]) -> BTreeMap<Effect, Refusal> {
-        self.beyond_the_log(found)
-            .into_iter()
-            .chain(self.absent.iter().map(|effect| (*effect, Refusal::Absent)))
-            .collect()
+    /// Returns the candidates that are never tried: those beyond the log, and those that by the reported values and intervals cannot stay.
+    fn never_tried(&mut self, found: &[Effect]) -> BTreeMap<Effect, Refusal> {
+        let mut all = self.beyond_the_log(found);
+        all.extend(self.excluded.iter().map(|(effect, refusal)| (*effect, *refusal)));
+        all
     }
 
     /// Adds candidates and tests whether they can stay, until nothing changes. A candidate that cannot stay is set aside, and the next one is tried.
@@ -266,7 +265,9 @@ impl<'b, 'a> Search<'b, 'a> {
             if let Some(refusal) = self.refused.remove(&first) {
                 self.refused.insert(second, refusal);
             }
-            self.absent.iter_mut().filter(|absent| **absent == first).for_each(|absent| *absent = second);
+            if let Some(refusal) = self.excluded.remove(&first) {
+                self.excluded.insert(second, refusal);
+            }
         }
     }
 

@@ -69,4 +69,13 @@ pub struct Tried {
     pub inflation: f64,
     /// The reason why it is not named.
     pub refusal: Refusal,
+    /// Whether nearly all that is left goes with it.
+    pub takes_rest: bool,
+}
+
+impl Tried {
+    /// Whether what is left may be this effect: one that sound robots have too, or that the log cannot tell from something else.
+    pub fn may_be_rest(&self) -> bool {
+        self.takes_rest && matches!(self.refusal, Refusal::Usual | Refusal::Open(_))
+    }
 }

@@ -4,6 +4,9 @@ use fric_core::effects::Effect;
 
 use crate::fit::Parameter;
 
+/// Effects that are no matter of size: with some values they are others.
+const DEGENERATE: [Effect; 3] = [Effect::SensorWarmup, Effect::FrictionWarmup, Effect::SensorNonlinearity];
+
 /// The reason why a candidate that helps is not named.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
@@ -27,8 +30,9 @@ pub enum Refusal {
     StandsIn(&'static str),
     /// The effect is no stronger than in robots without it.
     Usual,
-    /// The effect is no stronger than in robots without it, and accounts for nearly all that is left.
-    UsualRest,
+    /// With its values the effect is another one: a warm-up that is over at once is a zero, or what the start of the run has stored; a curve that is bent
+    /// beyond all loads is a gain with a zero.
+    Degenerate,
     /// The effect explains no more than this other effect does at a typical size.
     UsualInstead(Effect),
     /// A gain with an offset explains as much as the curve of the sensor.
@@ -42,4 +46,11 @@ pub enum Refusal {
         /// Time constant of the lag, s, as it shows behind a low-pass filter.
         time_constant_s: f64,
     },
+}
+
+impl Refusal {
+    /// Returns the reason against an effect that is no more than robots without it show.
+    pub(crate) fn usual(effect: Effect) -> Self {
+        if DEGENERATE.contains(&effect) { Self::Degenerate } else { Self::Usual }
+    }
 }

@@ -43,7 +43,7 @@ impl Search<'_, '_> {
         if self.excess(&model) <= NEGLIGIBLE || self.effort.is_spent(self.given_count + found.len() + 2) {
             return false;
         }
-        let excluded = self.excluded(found);
+        let excluded = self.never_tried(found);
         let mut round = self.round(found);
         round.retain(|(effect, _)| !excluded.contains_key(effect));
         for set in self.strong_sets(&model, &round, MOST_EFFECTS.saturating_sub(found.len())) {

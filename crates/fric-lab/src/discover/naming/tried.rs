@@ -9,8 +9,8 @@ use super::{NEGLIGIBLE, Refusal, STRONG_BIC, Search, Tried};
 use crate::candidates::catalogue::fitted;
 use crate::discover::rest::WORTH;
 
-/// An effect of a usual size accounts for the rest if it removes all but this fraction of it, or all but noise. Of the differences between the common laws of
-/// friction, an asymmetry leaves 0.006; half and double give the same answers.
+/// An effect takes the rest if it removes all but this fraction of it, or all but noise. Of the differences between the common laws of friction, an asymmetry
+/// leaves 0.006; half and double give the same answers.
 const NEARLY: f64 = 0.05;
 
 impl Search<'_, '_> {
@@ -34,8 +34,7 @@ impl Search<'_, '_> {
                 let refusal = if is_at_end(effect, &trial.values, cycle_s) {
                     Refusal::AtBound
                 } else if let Some(refusal) = self.refused.get(&effect) {
-                    let is_rest = *refusal == Refusal::Usual && self.excess(&trial) <= WORTH.max(NEARLY * excess);
-                    if is_rest { Refusal::UsualRest } else { *refusal }
+                    *refusal
                 } else if self.delta_bic(&model, &trial, inflation) >= -STRONG_BIC {
                     Refusal::Weak
                 } else if !gains(&model, &trial, enough) {
@@ -45,7 +44,8 @@ impl Search<'_, '_> {
                 } else {
                     Refusal::Unjudged
                 };
-                Tried { effect, trial, inflation, refusal }
+                let takes_rest = self.excess(&trial) <= WORTH.max(NEARLY * excess);
+                Tried { effect, trial, inflation, refusal, takes_rest }
             })
             .filter(|tried| self.delta_bic(&model, &tried.trial, tried.inflation) < least_evidence)
             .collect();

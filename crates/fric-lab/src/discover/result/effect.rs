@@ -83,6 +83,9 @@ pub struct TriedResult {
     /// The same reason for an effect of a cable; `None` for a tendon's.
     #[serde(skip)]
     pub refusal: Option<Refusal>,
+    /// Whether nearly all that is left goes with it.
+    #[serde(skip)]
+    pub takes_rest: bool,
 }
 
 /// A single effect beside the given model.
@@ -144,9 +147,9 @@ impl Candidate {
 
 impl TriedResult {
     pub(super) fn of(tried: &Tried) -> Self {
-        let Tried { effect, delta_bic, held_out_rms_n, refusal } = tried;
+        let Tried { effect, delta_bic, held_out_rms_n, refusal, takes_rest } = tried;
         let evidence = Evidence { delta_bic: finite(*delta_bic), held_out_rms_n: finite(*held_out_rms_n) };
         let (reason, refusal) = (refusal.in_words(), Some(*refusal));
-        Self { kind: effect.kind(), parameters: None, evidence, reason, refusal }
+        Self { kind: effect.kind(), parameters: None, evidence, reason, refusal, takes_rest: *takes_rest }
     }
 }

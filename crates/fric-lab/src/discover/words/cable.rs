@@ -193,7 +193,7 @@ impl DiscoverCableResult {
                 format!("The model lacks {}. Nothing of what is left of the wrench is told to be of this cable.", names(&all))
             }
             Verdict::Complete if wander_n.is_some() => "No effect of the catalogue is missing.".to_owned(),
-            Verdict::Complete if self.tried_and(Refusal::WithinNoise).is_some() => {
+            Verdict::Complete if self.tried.iter().any(|tried| tried.refusal == Some(Refusal::WithinNoise)) => {
                 "With values fitted to the log, the model agrees with it to the noise, as far as the log shows what its noise is. \
                  A longer log would tell whether something small is missing."
                     .to_owned()
@@ -210,13 +210,7 @@ impl DiscoverCableResult {
                     all.iter().copied().filter(|effect| effect.effect != Effect::Empirical).collect();
                 let lacks =
                     if named.is_empty() { String::new() } else { format!("The model lacks {}. ", names(&named)) };
-                let rest = lacks + &match self.tried_and(Refusal::UsualRest) {
-                    Some(usual) => format!(
-                        "What remains is no more than the law of friction of a sound robot may differ from that of the model: \
-                         {} of a usual size would account for it.", usual.kind
-                    ),
-                    None => "Something remains that no effect of the catalogue accounts for.".to_owned(),
-                };
+                let rest = lacks + &self.rest_in_words();
                 if named.len() == all.len() {
                     rest
                 } else {
@@ -235,9 +229,23 @@ impl DiscoverCableResult {
         text
     }
 
-    /// Returns the best candidate that is not named for this reason.
-    fn tried_and(&self, refusal: Refusal) -> Option<&TriedResult> {
-        self.tried.iter().find(|tried| tried.refusal == Some(refusal))
+    /// Returns what remains, in a sentence.
+    fn rest_in_words(&self) -> String {
+        let takes = |refusal: Option<Refusal>| -> Vec<&str> {
+            let alike = self.tried.iter().filter(|tried| tried.takes_rest && tried.refusal == refusal);
+            alike.map(|tried| tried.kind).collect()
+        };
+        let is_known =
+            |tried: &&TriedResult| tried.takes_rest && matches!(tried.refusal, Some(Refusal::Usual | Refusal::Open(_)));
+        match self.tried.iter().find(is_known) {
+            None => "Something remains that no effect of the catalogue accounts for.".to_owned(),
+            Some(TriedResult { refusal: Some(Refusal::Usual), kind, .. }) => format!(
+                "What remains is no more than laws of friction differ by: {kind} of a size that sound robots have accounts for it."
+            ),
+            Some(tried) => {
+                format!("What remains may be {}, but {}.", takes(tried.refusal).join(" or "), tried.reason)
+            }
+        }
     }
 
     /// Returns the gap before and after, as a sentence without its full stop.

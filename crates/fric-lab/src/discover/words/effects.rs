@@ -142,7 +142,10 @@ impl Refusal {
                 "a law without a name that goes with the {} explains more, and leaves little for it",
                 condition(signal)
             ),
-            Self::Usual | Self::UsualRest => "it is no larger than on a sound robot".to_owned(),
+            Self::Usual => "it is no larger than on a sound robot".to_owned(),
+            Self::Degenerate => {
+                "with its values it is no more than a zero, a gain or what the start of the run has stored".to_owned()
+            }
             Self::UsualInstead(usual) => {
                 format!("{} of a size that robots usually have leaves little for it to explain", usual.kind())
             }

@@ -6,6 +6,7 @@ use super::bench::Model;
 use super::geometry::Geometry;
 use crate::candidates::catalogue::{fitted, has};
 use crate::candidates::ripple::period_of;
+use crate::discover::naming::Refusal;
 use crate::fit::Parameter;
 
 /// Something that a model may lack.
@@ -36,6 +37,11 @@ impl Candidate {
             Self::Alike(effect) | Self::Own(_, effect) => Some(effect),
             Self::Geometry(_) => None,
         }
+    }
+
+    /// Returns the reason against it where it is no more than robots without it show.
+    pub fn usual(self) -> Refusal {
+        self.effect().map_or(Refusal::Usual, Refusal::usual)
     }
 
     /// Returns its name without the cables.

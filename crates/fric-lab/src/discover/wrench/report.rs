@@ -187,7 +187,8 @@ impl Case<'_, '_> {
         let findings: Vec<Finding> = naming.named.iter().filter_map(|named| finding(named, cable)).collect();
         let tried = naming.tried.iter().filter_map(|tried| match tried.candidate {
             Candidate::Own(of, effect) if of == cable => {
-                Some(Tried { effect, delta_bic: tried.delta_bic, held_out_rms_n: f64::NAN, refusal: tried.refusal })
+                let (delta_bic, refusal) = (tried.delta_bic, tried.refusal);
+                Some(Tried { effect, delta_bic, held_out_rms_n: f64::NAN, refusal, takes_rest: false })
             }
             _ => None,
         });

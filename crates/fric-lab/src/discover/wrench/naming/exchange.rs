@@ -79,7 +79,7 @@ impl Search<'_> {
                 let delta_bic = self.delta_bic(&trial, &with, candidate.count(), inflation);
                 let refusal = match self.refused.get(&candidate) {
                     _ if self.is_at_end(candidate, &with) => Refusal::AtBound,
-                    _ if !self.is_more_than_usual(candidate, &with) => Refusal::Usual,
+                    _ if !self.is_more_than_usual(candidate, &with) => candidate.usual(),
                     Some(refusal) => *refusal,
                     None if delta_bic >= -STRONG_BIC => Refusal::Weak,
                     None if trial.held_out - with.held_out <= self.least_gain(&trial) => Refusal::Small,

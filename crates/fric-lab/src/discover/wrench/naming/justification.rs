@@ -75,7 +75,7 @@ impl Search<'_> {
         } else if away < LEAST_AWAY || !is_one_of_many(strong, candidate) && !is_strong() {
             Some(Refusal::Weak)
         } else if !self.is_more_than_usual(candidate, trial) {
-            Some(Refusal::Usual)
+            Some(candidate.usual())
         } else if let Candidate::Alike(effect) = candidate
             && self.do_cables_differ(found, effect, trial)
         {
