@@ -283,7 +283,7 @@ fn fail_each(kind: &str, pick: impl Fn(u64) -> Vec<u64>) {
 
 /// The first calls, later ones ever farther apart, and the last one.
 fn some(calls: u64) -> Vec<u64> {
-    let later = std::iter::successors(Some(4), |n| Some(n + n.div_ceil(2))).take_while(|n| *n < calls);
+    let later = std::iter::successors(Some(4_u64), |n| Some(n + n.div_ceil(2))).take_while(|n| *n < calls);
     (1..=calls.min(3)).chain(later).chain((calls > 3).then_some(calls)).collect()
 }
 
