@@ -72,7 +72,7 @@ fn scanned_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row
     if samples.len() < ENOUGH / 10 || range_m <= 0.0 {
         return Vec::new();
     }
-    let powers = powers(&samples, least_m, range_m, most_turns(range_m, samples.len()));
+    let powers = powers(&samples, least_m, range_m, most_turns(range_m, samples.len(), slow_way_m(record)));
     let mut peaks: Vec<(usize, f64)> = (1..)
         .zip(powers.windows(3))
         .filter(|(half_turns, three)| *half_turns >= LEAST_HALF_TURNS && three[1] > three[0] && three[1] >= three[2])
@@ -85,9 +85,19 @@ fn scanned_m(record: &CableRecord<'_>, residual_n: &[f64], carrier: impl Fn(&Row
     peaks.iter().take(MOST_PERIODS).map(|(half_turns, _)| sharpened(&few, period_m(*half_turns), range_m)).collect()
 }
 
-/// Returns the number of turns in the range at the shortest period that is sought: the least that a robot file may state, but two samples a turn.
-fn most_turns(range_m: f64, sample_count: usize) -> usize {
+/// Returns the way of a cable in a cycle that three quarters of the cycles in motion exceed; 0 if none is in motion.
+fn slow_way_m(record: &CableRecord<'_>) -> f64 {
+    let ways_m = record.rows.iter().map(|row| row.signals.displacement_m.abs());
+    let mut ways_m: Vec<f64> = ways_m.filter(|way_m| *way_m > 0.0 && way_m.is_finite()).collect();
+    let quarter = ways_m.len() / 4;
+    if ways_m.is_empty() { 0.0 } else { *ways_m.select_nth_unstable_by(quarter, f64::total_cmp).1 }
+}
+
+/// Returns the number of turns in the range at the shortest period that is sought: the least that a robot file may state, but two samples a turn, also while the
+/// cable is slow. At one speed the lengths are a grid, on which a shorter period looks like a longer one, or like a constant.
+fn most_turns(range_m: f64, sample_count: usize, slow_way_m: f64) -> usize {
     let least_m = period_of(Effect::WinchRipple).map_or(f64::INFINITY, |period| period.row().min);
+    let least_m = least_m.max(2.0 * slow_way_m);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a cast saturates")]
     let turns = (range_m / least_m) as usize;
     turns.min(sample_count / 2)
@@ -192,7 +202,7 @@ mod tests {
                 (length_m, ripple + noise)
             })
             .collect();
-        let powers = powers(&samples, -0.6, 1.3, most_turns(1.3, samples.len()));
+        let powers = powers(&samples, -0.6, 1.3, most_turns(1.3, samples.len(), 0.0));
         for half_turns in [4_u32, 33, 584, 2001, 3600, 4999] {
             let exact = ripple_power(&samples, 2.6 / f64::from(half_turns));
             let found = powers[usize::try_from(half_turns).unwrap()];
@@ -214,7 +224,7 @@ mod tests {
                 (length_m, 0.5 * (TAU * length_m / period_m).cos() + noise)
             })
             .collect();
-        let powers = powers(&samples, 0.0, way_m, most_turns(way_m, samples.len()));
+        let powers = powers(&samples, 0.0, way_m, most_turns(way_m, samples.len(), 0.0));
         let strongest = (4..powers.len()).max_by(|one, other| powers[*one].total_cmp(&powers[*other])).unwrap();
         let half_turns = u32::try_from(strongest).unwrap();
         assert!((f64::from(half_turns) - 2.0 * way_m / period_m).abs() <= 1.0, "{half_turns}");

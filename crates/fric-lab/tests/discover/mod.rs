@@ -10,6 +10,7 @@ mod late;
 mod of_length;
 mod one_load;
 mod revised;
+mod simple_runs;
 mod turning;
 mod undetermined;
 mod wrench;

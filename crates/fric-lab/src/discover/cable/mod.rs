@@ -99,8 +99,11 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
         return Ok(CableDiscovery::untold(record, samples, lack_of_noise()));
     };
     task.stages.finish_one();
-    // A wrong model may hide an oscillation, or leave an error that only looks like one.
-    let after = Oscillations::of(&left_by(&outcome.fitted.values), &times, record, &signals);
+    // A wrong model may hide an oscillation, or leave an error that only looks like one. That error was taken off the log to which the extended model is
+    // fitted, and is what this leaves of the whole log, so the model is fitted to the whole first.
+    let named = outcome.fitted.model();
+    let whole = if heard.faults().is_empty() { named.values } else { bench.try_one(&named).values };
+    let after = Oscillations::of(&left_by(&whole), &times, record, &signals);
     let mut faults = after.faults();
     if !heard.are_like(&after)
         && !outcome.is_cut_short()

@@ -1,7 +1,7 @@
 //! Cache of the models that a search has fitted: each set of effects is fitted once.
 
 use fric_core::effects::Effect;
-use fric_core::parameters::{MU, Values};
+use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::evidence::inflation;
 use super::{LEAST_GAIN, LEAST_SIZE, Search, Set, set_of, without};
@@ -11,6 +11,7 @@ use crate::certainty::determined::NEGLIGIBLE_MU;
 use crate::discover::workbench::{Model, NEAR_ERRORS, Trial};
 use crate::effects::pulley_defect;
 use crate::fit::Parameter;
+use crate::search::vector::Coordinate;
 
 /// No friction equation is trusted to better than this fraction of the force that it adds. Otherwise the model error of a strong effect would be
 /// taken for a weak effect.
@@ -107,13 +108,21 @@ impl Search<'_, '_> {
         candidates.iter().filter_map(|effect| Some((*effect, self.fits.get(&with(effect))?.clone()))).collect()
     }
 
-    /// Returns the values of a model with the file's friction where it has none left: what it lacks may outweigh friction, and a search that starts without
-    /// any hardly comes back to it.
+    /// Returns the values of a model with the file's μ and σ if one of them has run to the end of its range, so that hardly any friction is left, or far too
+    /// much: what the model lacks may outweigh friction, and a search that starts there hardly comes back.
     fn with_friction(&self, model: &Trial) -> Values {
-        let (mut values, given_mu) = (model.values, self.bench.record.params.values()[MU]);
-        let is_free = model.free.iter().any(|parameter| parameter.place() == MU);
-        if is_free && values[MU] <= NEGLIGIBLE_MU && given_mu > NEGLIGIBLE_MU {
-            values[MU] = given_mu;
+        let (mut values, given) = (model.values, self.bench.record.params.values());
+        let free = model.free.iter().filter(|parameter| [MU, SIGMA].contains(&parameter.place()));
+        let has_run = |parameter: &&Parameter| {
+            let place = parameter.place();
+            let near = if place == MU { NEGLIGIBLE_MU } else { 0.0 };
+            let bound = Coordinate::of(parameter, self.bench.record.cycle_s).bound_at(values[place], near);
+            bound.is_some_and(|bound| place == MU || bound < given[SIGMA])
+        };
+        if given[MU] > NEGLIGIBLE_MU && free.clone().any(|parameter| has_run(&parameter)) {
+            for place in free.map(Parameter::place) {
+                values[place] = given[place];
+            }
         }
         values
     }
