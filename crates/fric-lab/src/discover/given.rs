@@ -50,9 +50,9 @@ pub fn given_model(
     let given = record.params.values();
     let undetermined = |parameter: &Parameter| paper.undetermined.iter().any(|unknown| unknown.parameter == *parameter);
     let all = FitOptions::default().shared(record);
-    let other = |is_wanted: fn(&Parameter) -> bool| all.iter().find(|of| is_wanted(of) && !acts(of, &given)).copied();
-    let (other_zero, other_friction) =
-        (other(|of| of.place() == OFFSET), other(|of| of.is_friction() && of.place() != OFFSET));
+    let mut lacking = all.iter().copied().filter(|parameter| parameter.is_friction() && !acts(parameter, &given));
+    let has_other_friction = lacking.clone().any(|parameter| parameter.place() != OFFSET);
+    let other_zero = lacking.find(|parameter| parameter.place() == OFFSET);
     let acting = all.into_iter().filter(|parameter| acts(parameter, &given));
     let (mut held, free): (Vec<Parameter>, Vec<Parameter>) = acting.partition(undetermined);
     let mut values = given;
@@ -76,7 +76,7 @@ pub fn given_model(
             model.values[parameter.place()] = trial.values[parameter.place()];
         }
     };
-    if other_friction.is_some() && !of_friction.is_empty() {
+    if has_other_friction && !of_friction.is_empty() {
         fit_too(other_zero, &of_friction);
     }
     if other_zero.is_some() && !of_effects.is_empty() {

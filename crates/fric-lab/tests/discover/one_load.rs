@@ -180,6 +180,16 @@ fn a_zero_in_motion_mostly_one_way_is_named() {
     }
 }
 
+/// A warm-up that is over at once is a zero, and does not keep the zero from its name.
+#[test]
+fn a_gain_in_motion_mostly_one_way_is_told_as_a_zero_too() {
+    for seed in [1, 2, 3] {
+        let (cable, summary) =
+            look(Bench { motion: Motion::MostlyOut, gain: 1.25, zero_n: 0.0, varies_n: 0.0, seed }, "");
+        assert_eq!(names(&cable), [("sensor_offset", Some("sensor_gain"))], "{seed}: {summary}");
+    }
+}
+
 /// Where the load varies by less than the friction a gain is not named. That it accounts for what a zero leaves is told, and no table stands in for it.
 #[test]
 fn a_gain_that_cannot_be_told_from_a_zero_gets_no_table() {

@@ -76,6 +76,6 @@ pub struct Tried {
 impl Tried {
     /// Whether what is left may be this effect: one that sound robots have too, or that the log cannot tell from something else.
     pub fn may_be_rest(&self) -> bool {
-        self.takes_rest && matches!(self.refusal, Refusal::Usual | Refusal::Open(_))
+        self.takes_rest && self.refusal.leaves_open()
     }
 }

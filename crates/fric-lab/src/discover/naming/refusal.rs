@@ -53,4 +53,9 @@ impl Refusal {
     pub(crate) fn usual(effect: Effect) -> Self {
         if DEGENERATE.contains(&effect) { Self::Degenerate } else { Self::Usual }
     }
+
+    /// Whether an effect that is refused so may be there all the same.
+    pub(crate) fn leaves_open(self) -> bool {
+        matches!(self, Self::Usual | Self::Open(_))
+    }
 }

@@ -231,19 +231,16 @@ impl DiscoverCableResult {
 
     /// Returns what remains, in a sentence.
     fn rest_in_words(&self) -> String {
-        let takes = |refusal: Option<Refusal>| -> Vec<&str> {
-            let alike = self.tried.iter().filter(|tried| tried.takes_rest && tried.refusal == refusal);
-            alike.map(|tried| tried.kind).collect()
-        };
-        let is_known =
-            |tried: &&TriedResult| tried.takes_rest && matches!(tried.refusal, Some(Refusal::Usual | Refusal::Open(_)));
-        match self.tried.iter().find(is_known) {
+        let mut takers = self.tried.iter().filter(|tried| tried.takes_rest);
+        match takers.find(|tried| tried.refusal.is_some_and(Refusal::leaves_open)) {
             None => "Something remains that no effect of the catalogue accounts for.".to_owned(),
-            Some(TriedResult { refusal: Some(Refusal::Usual), kind, .. }) => format!(
-                "What remains is no more than laws of friction differ by: {kind} of a size that sound robots have accounts for it."
-            ),
-            Some(tried) => {
-                format!("What remains may be {}, but {}.", takes(tried.refusal).join(" or "), tried.reason)
+            Some(TriedResult { refusal: Some(Refusal::Usual), kind, .. }) => {
+                format!("What remains is no more than sound robots have: {kind} of such a size accounts for it.")
+            }
+            Some(first) => {
+                let alike = takers.filter(|tried| tried.refusal == first.refusal).map(|tried| tried.kind);
+                let kinds: Vec<&str> = std::iter::once(first.kind).chain(alike).collect();
+                format!("What remains may be {}, but {}.", kinds.join(" or "), first.reason)
             }
         }
     }
