@@ -4,8 +4,9 @@
 use std::f64::consts::TAU;
 
 use fric_core::effects::Effect;
+use fric_core::effects::empirical::{Over, RATIO, SHARE_PLACES};
 use fric_core::robot::file::RobotFile;
-use fric_core::{CableInput, Sample};
+use fric_core::{CableInput, Sample, parameters};
 use fric_lab::discover::{CableDiscovery, DiscoverOptions, Verdict, discover};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use rand_chacha::ChaCha8Rng;
@@ -129,4 +130,22 @@ fn a_ripple_in_motion_that_repeats_itself_is_no_hum() {
     );
     let left_n = found.after.held_out_n.rms().unwrap();
     assert!(left_n < 1.05 * 2.0_f64.sqrt() * NOISE_N, "{left_n} N");
+}
+
+/// Of a ripple the run shows less than a turn, which is a friction that goes with the length. A table over the load would have both loads by heart: it shows
+/// them whatever the sensor reads.
+#[test]
+fn friction_over_the_length_under_two_loads_is_no_table_over_the_load() {
+    let found = look(&Bench { speed_m_per_s: triangle, load_n: two_n, gain: 1.0, ripple_ratio: 0.35 });
+    assert_eq!((names(&found), found.verdict), (vec![Effect::Empirical], Verdict::Unexplained));
+    let values = &found.after.values;
+    assert_eq!(Over::of(|place| values[place]), Some(Over::Length));
+    let (from_m, to_m) = (values[Over::Length.from()], values[Over::Length.to()]);
+    for (share, place) in SHARE_PLACES.zip(0_u32..) {
+        let length_m = from_m + (to_m - from_m) * f64::from(place) / 11.0;
+        let truth = MU * (1.0 + 0.35 * (TAU * length_m / PERIOD_M).sin());
+        let mu = values[parameters::MU] * (1.0 + values[RATIO] * values[share]);
+        // Where the motion returns, friction has not built up yet.
+        assert!((mu - truth).abs() < 0.1 * MU, "{length_m} m: {mu} for {truth}");
+    }
 }

@@ -4,9 +4,9 @@
 //! the whole range of the condition and over the part in which the rest is concentrated.
 //!
 //! 1. *Fit.* The shares of a table and the parameters of the model are fitted together, by penalised least squares on the training samples: `Σr² +
-//!    λ·Σ(second differences)²`. Condition, kind and λ are chosen by cross-validation over the blocks, among tables that predict no better than the
-//!    noise lets.
-//! 2. *Keep.* A table must remove [`LEAST_CLOSED`] of the squares above the noise on the held-out samples, with a gain beyond the scatter of their
+//!    λ·Σ(second differences)²`. Condition, kind and λ are chosen by cross-validation over the blocks. There a table over the load reads the load that
+//!    the sensor would show if the model were right ([`loads`]).
+//! 2. *Keep.* A table must remove [`LEAST_CLOSED`] of the squares above the noise in the cross-validation and on the held-out samples, with a gain beyond the scatter of their
 //!    blocks. It must also hold in other conditions: for each third of every other condition, and of the time, a table learned outside this third
 //!    must remove enough inside it, as far as it has covered its own condition.
 //! 3. A rest that another cable's signals explain better gets no table.
@@ -14,6 +14,7 @@
 //! All fits use the cycle's own derivatives, so a table runs in the cycle exactly as it was judged.
 
 mod layout;
+mod loads;
 mod normal;
 mod tried;
 mod words;
@@ -67,12 +68,10 @@ pub fn table(bench: &Workbench<'_>, model: &Model, noise_n: f64, places: &[Place
     let mut candidates = candidates(bench, &base, &residual_n, places);
     // A constant load says nothing about how the force depends on it. A table over the load would turn any force into that constant.
     candidates.retain(|candidate| candidate.over != Over::Load || bench.knows_load(noise_n));
-    let chosen = candidates.iter().filter_map(|candidate| Tried::of(candidate, bench, &base));
-    // A table that predicts better than the noise lets has a few loads by heart: it shows each of them whatever the sensor does.
-    let least = (1.0 - WORTH) * Squares::of(bench, &residual_n, false).noise(noise_n);
-    let chosen = chosen
-        .filter(|tried| tried.predicted >= least)
-        .min_by(|one, other| one.predicted.total_cmp(&other.predicted))?;
+    let told_n = loads::told(bench, &residual_n);
+    let chosen = candidates.iter().filter_map(|candidate| Tried::of(candidate, bench, &base, &told_n, noise_n));
+    let chosen =
+        chosen.filter(|tried| tried.closed >= LEAST_CLOSED).max_by(|one, other| one.closed.total_cmp(&other.closed))?;
     let holds_elsewhere = chosen.holds_elsewhere(bench, noise_n);
     let (values, covariance, inflation, fitted) = chosen.finished(bench, &base)?;
     // No robot file states a table that raises the friction beyond what a pulley can have.

@@ -7,6 +7,12 @@ use crate::search::gram::inverse_of_normal;
 
 /// Penalty on the size of the table, on the same scale. It assigns to friction what both table and friction can explain.
 const RIDGE: f64 = 1e-6;
+/// The same on the sum of the changes. A change that is the same everywhere is one of μ, or of the zero. With less, μ and the table grow against each other.
+const OF_SUM: f64 = 0.01;
+
+/// Index of the last share, the distance from the first one to it.
+#[expect(clippy::cast_precision_loss, reason = "a small count")]
+const LAST_SHARE: f64 = (SHARES - 1) as f64;
 
 /// Derivatives and residuals of samples, side by side.
 pub struct Rows {
@@ -26,6 +32,30 @@ impl Rows {
 
     pub fn at(&self, row: usize) -> &[f64] {
         self.numbers.get(row * self.width..(row + 1) * self.width).unwrap_or_default()
+    }
+
+    /// Returns the rows of a table that reads another condition, given by cycle. `range` is that of the table.
+    pub fn with_conditions(&self, [from, to]: [f64; 2], condition: &[f64]) -> Self {
+        let mut numbers = self.numbers.clone();
+        for (row, cycle) in numbers.chunks_exact_mut(self.width).zip(&self.cycles) {
+            let Some(of_shares) = row.get_mut(self.first_share..self.width - 1) else { continue };
+            // The weights of the shares sum to 1, so the sum of the derivatives is that of the whole table.
+            let of_table: f64 = of_shares.iter().sum();
+            let at = condition.get(*cycle).copied().unwrap_or(f64::NAN);
+            let place = ((at - from) / (to - from)).clamp(0.0, 1.0) * LAST_SHARE;
+            let mut of_share = 0.0;
+            for derivative in of_shares {
+                *derivative = of_table * (1.0 - (place - of_share).abs()).max(0.0);
+                of_share += 1.0;
+            }
+        }
+        Self {
+            numbers,
+            cycles: self.cycles.clone(),
+            blocks: self.blocks.clone(),
+            held_out: self.held_out.clone(),
+            ..*self
+        }
     }
 
     /// Returns the normal equations of the wanted rows.
@@ -73,7 +103,7 @@ impl Normal {
         self.0.nrows() - 1
     }
 
-    /// Returns the matrix with the penalties on the second differences of the shares and on their size.
+    /// Returns the matrix with the penalties on the second differences of the shares, on their size and on their sum.
     pub fn penalised(&self, first_share: usize, penalty: f64) -> DMatrix<f64> {
         let free = self.free();
         let mut matrix = self.0.view((0, 0), (free, free)).into_owned();
@@ -81,6 +111,9 @@ impl Normal {
         let information = (first_share..free).map(|place| matrix[(place, place)]).sum::<f64>() / SHARES as f64;
         for place in first_share..free {
             matrix[(place, place)] += RIDGE * information;
+            for other in first_share..free {
+                matrix[(place, other)] += OF_SUM * information;
+            }
         }
         for middle in first_share + 1..free.saturating_sub(1) {
             let difference = [(middle - 1, 1.0), (middle, -2.0), (middle + 1, 1.0)];
@@ -104,6 +137,11 @@ impl Normal {
         }
         let slope = self.0.view((0, free), (free, 1)) + (&matrix - plain) * now;
         Some(-(inverse_of_normal(&matrix)? * slope).column(0).into_owned())
+    }
+
+    /// Returns the sum of squares without a step.
+    pub fn squares(&self) -> f64 {
+        self.0[(self.free(), self.free())]
     }
 
     /// Returns the sum of squares after a step.

@@ -32,34 +32,40 @@ const FEWEST_SAMPLES: usize = 200;
 pub struct Tried {
     pub layout: Layout,
     pub penalty: f64,
-    /// Sum of squares over the training samples, each predicted from other blocks, N².
-    pub predicted: f64,
+    /// Fraction of the squares above the noise that it removes on the training samples, each predicted from other blocks.
+    pub closed: f64,
     pub rows: Rows,
 }
 
 impl Tried {
-    /// Fits the table beside the model with the penalty that predicts best.
-    pub fn of(layout: &Layout, bench: &Workbench<'_>, base: &Model) -> Option<Self> {
+    /// Fits the table beside the model with the penalty that predicts best. `told_n` are the loads for this, see [`loads`](super::loads).
+    pub fn of(layout: &Layout, bench: &Workbench<'_>, base: &Model, told_n: &[f64], noise_n: f64) -> Option<Self> {
         let values = layout.set(&base.values, 1.0, &[0.0; SHARES]);
         let rows = layout.rows(bench, base, &values);
+        let read = (layout.over == Over::Load).then(|| rows.with_conditions(layout.range, told_n));
+        let read = read.as_ref().unwrap_or(&rows);
         let learned: Vec<usize> =
             bench.blocks.iter().enumerate().filter(|(_, block)| !block.held_out).map(|(place, _)| place).collect();
         let fold_of = |block: usize| learned.iter().position(|place| *place == block).map(|place| place % FOLDS);
         let folds: Vec<Option<usize>> = (0..bench.blocks.len()).map(fold_of).collect();
         let normals: Vec<Normal> = (0..FOLDS)
-            .map(|fold| rows.normal(|row| folds.get(rows.blocks[row]).copied().flatten() == Some(fold)))
+            .map(|fold| read.normal(|row| folds.get(read.blocks[row]).copied().flatten() == Some(fold)))
             .collect();
-        let all = normals.iter().fold(Normal::none(rows.width), |sum, normal| sum.and(normal));
+        let all = normals.iter().fold(Normal::none(read.width), |sum, normal| sum.and(normal));
         let predicted = |penalty: f64| -> Option<f64> {
             let of_fold = |normal: &Normal| {
-                let step = all.less(normal).solved(rows.first_share, penalty, &[0.0; SHARES])?;
+                let step = all.less(normal).solved(read.first_share, penalty, &[0.0; SHARES])?;
                 Some(normal.squares_after(&step))
             };
             normals.iter().map(of_fold).sum::<Option<f64>>()
         };
         let best = PENALTIES.iter().filter_map(|penalty| Some((predicted(*penalty)?, *penalty)));
         let (predicted, penalty) = best.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        Some(Self { layout: layout.clone(), penalty, predicted, rows })
+        #[expect(clippy::cast_precision_loss, reason = "a count")]
+        let noise = read.held_out.iter().filter(|held_out| !**held_out).count() as f64 * noise_n * noise_n;
+        let before = all.squares();
+        let closed = (before - predicted) / (before - noise);
+        Some(Self { layout: layout.clone(), penalty, closed, rows })
     }
 
     /// Whether a table that was learned without a part of another condition holds in this part.
