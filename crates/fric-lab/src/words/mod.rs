@@ -34,8 +34,12 @@ pub fn name_of(key: &str) -> String {
 #[must_use]
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share.clamp(0.0, 1.0);
-    // A fraction just below 100 % must not be rounded to 100 %, so values that would round to 99 or 100 get one more digit.
-    if (98.5..99.95).contains(&percent) { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
+    // A fraction just below 100 % must not be rounded to 100 %, nor one just above 0 to 0: values near the ends get one more digit.
+    if (98.5..99.95).contains(&percent) || (0.05..1.5).contains(&percent) {
+        format!("{percent:.1} %")
+    } else {
+        format!("{percent:.0} %")
+    }
 }
 
 /// Formats a force.

@@ -7,7 +7,7 @@ use fric_core::effects::Effect;
 use fric_core::effects::empirical::{Over, RATIO, SHARE_PLACES};
 use fric_core::robot::file::RobotFile;
 use fric_core::{CableInput, Sample, parameters};
-use fric_lab::discover::{CableDiscovery, DiscoverOptions, Verdict, discover};
+use fric_lab::discover::{CableDiscovery, DiscoverOptions, Refusal, Verdict, discover};
 use fric_lab::fit::{Measurements, Progress, Reference};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -20,13 +20,18 @@ const MU: f64 = 0.025;
 const SIGMA_N_PER_M: f64 = 3000.0;
 const PERIOD_M: f64 = 0.21;
 
-/// A cable with a gain of its sensor and a ripple of its friction.
+/// A cable with a gain of its sensor, a ripple of its friction and viscous friction.
 struct Bench {
     speed_m_per_s: fn(i32) -> f64,
     load_n: fn(f64) -> f64,
     gain: f64,
     ripple_ratio: f64,
+    viscous_n_s_per_m: f64,
 }
+
+/// A cable that lacks nothing, there and back at one speed under one load.
+const PLAIN: Bench =
+    Bench { speed_m_per_s: triangle, load_n: constant_n, gain: 1.0, ripple_ratio: 0.0, viscous_n_s_per_m: 0.0 };
 
 /// One and a half seconds each way.
 fn triangle(cycle: i32) -> f64 {
@@ -79,7 +84,8 @@ fn look(bench: &Bench) -> CableDiscovery {
             let end_n = way_m.signum() * greatest_n;
             friction_n = end_n + (friction_n - end_n) * (-SIGMA_N_PER_M * way_m.abs() / greatest_n).exp();
         }
-        let sensor_force_n = bench.gain * (load_n - friction_n) + noise_n();
+        let viscous_n = bench.viscous_n_s_per_m * speed_m_per_s;
+        let sensor_force_n = bench.gain * (load_n - friction_n - viscous_n) + noise_n();
         measurements.add(&Sample {
             stamp_nanos: i64::from(cycle) * 10_000_000,
             cables: &[CableInput { sensor_force_n, length_m, speed_m_per_s }],
@@ -98,7 +104,7 @@ fn names(found: &CableDiscovery) -> Vec<Effect> {
 /// At one speed the lengths are a grid, on which a ripple of a fraction of its step is a constant.
 #[test]
 fn a_gain_at_one_speed_is_no_ripple() {
-    let found = look(&Bench { speed_m_per_s: triangle, load_n: two_n, gain: 1.08, ripple_ratio: 0.0 });
+    let found = look(&Bench { load_n: two_n, gain: 1.08, ..PLAIN });
     assert_eq!((names(&found), found.verdict), (vec![Effect::SensorGain], Verdict::Extended));
     let gain = found.after.values[Effect::SensorGain.places().start];
     assert!((gain / 1.08 - 1.0).abs() < 1e-3, "{gain}");
@@ -107,7 +113,7 @@ fn a_gain_at_one_speed_is_no_ripple() {
 /// The gain outweighs the friction, so that the given model has none left.
 #[test]
 fn a_gain_that_hides_all_friction_is_named() {
-    let found = look(&Bench { speed_m_per_s: lift, load_n: slow_n, gain: 1.08, ripple_ratio: 0.0 });
+    let found = look(&Bench { speed_m_per_s: lift, load_n: slow_n, gain: 1.08, ..PLAIN });
     assert_eq!((names(&found), found.verdict), (vec![Effect::SensorGain], Verdict::Extended));
     let gain = found.after.values[Effect::SensorGain.places().start];
     assert!((gain / 1.08 - 1.0).abs() < 1e-3, "{gain}");
@@ -116,7 +122,7 @@ fn a_gain_that_hides_all_friction_is_named() {
 /// In a motion that repeats itself a ripple of the length has lines at sums of both frequencies, which are no multiples of either.
 #[test]
 fn a_ripple_in_motion_that_repeats_itself_is_no_hum() {
-    let found = look(&Bench { speed_m_per_s: lift, load_n: constant_n, gain: 1.0, ripple_ratio: 0.35 });
+    let found = look(&Bench { speed_m_per_s: lift, ripple_ratio: 0.35, ..PLAIN });
     assert_eq!((names(&found), found.verdict), (vec![Effect::FrictionRipple], Verdict::Extended));
     assert!(found.faults.is_empty(), "{:?}", found.faults);
     let [sin, cos, period_m] =
@@ -136,7 +142,7 @@ fn a_ripple_in_motion_that_repeats_itself_is_no_hum() {
 /// them whatever the sensor reads.
 #[test]
 fn friction_over_the_length_under_two_loads_is_no_table_over_the_load() {
-    let found = look(&Bench { speed_m_per_s: triangle, load_n: two_n, gain: 1.0, ripple_ratio: 0.35 });
+    let found = look(&Bench { load_n: two_n, ripple_ratio: 0.35, ..PLAIN });
     assert_eq!((names(&found), found.verdict), (vec![Effect::Empirical], Verdict::Unexplained));
     let values = &found.after.values;
     assert_eq!(Over::of(|place| values[place]), Some(Over::Length));
@@ -147,5 +153,16 @@ fn friction_over_the_length_under_two_loads_is_no_table_over_the_load() {
         let mu = values[parameters::MU] * (1.0 + values[RATIO] * values[share]);
         // Where the motion returns, friction has not built up yet.
         assert!((mu - truth).abs() < 0.1 * MU, "{length_m} m: {mu} for {truth}");
+    }
+}
+
+/// At one speed each way viscous friction is a constant, which a wrong μ or a drag looks like, and others with it. Every robot has some.
+#[test]
+fn viscous_friction_that_the_log_cannot_tell_gets_no_other_name() {
+    for speed_m_per_s in [triangle, lift] {
+        let found = look(&Bench { speed_m_per_s, load_n: slow_n, viscous_n_s_per_m: 4.0, ..PLAIN });
+        assert_eq!((names(&found), found.verdict), (vec![], Verdict::Unexplained));
+        let viscous = found.tried.iter().find(|tried| tried.effect == Effect::Viscous).unwrap();
+        assert!(matches!(viscous.refusal, Refusal::Open(_)) && viscous.takes_rest, "{:?}", viscous.refusal);
     }
 }

@@ -65,12 +65,18 @@ impl Search<'_, '_> {
         named
     }
 
-    /// Whether strong evidence for an effect is missing once another effect of a typical size is in the model.
+    /// Whether strong evidence for an effect is missing once another effect of a typical size is in the model, or friction that every robot has and that
+    /// this log cannot distinguish.
     fn usual_instead(&mut self, found: &[Effect], effect: Effect, inflation: f64) -> Option<Refusal> {
         // A zero and a gain are what such an effect degenerates to.
         let is_straight = [Effect::SensorOffset, Effect::SensorGain].contains(&effect);
         let is_usual = |(other, refusal): (&Effect, &Refusal)| {
-            let counts = *refusal == Refusal::Usual || *refusal == Refusal::Degenerate && !is_straight;
+            let counts = match refusal {
+                Refusal::Usual => true,
+                Refusal::Degenerate => !is_straight,
+                Refusal::Open(_) => other.is_friction(),
+                _ => false,
+            };
             (counts && !found.contains(other)).then_some(*other)
         };
         let usual: Vec<Effect> = self.refused.iter().filter_map(is_usual).collect();

@@ -33,7 +33,7 @@ pub enum Refusal {
     /// With its values the effect is another one: a warm-up that is over at once is a zero, or what the start of the run has stored; a curve that is bent
     /// beyond all loads is a gain with a zero.
     Degenerate,
-    /// The effect explains no more than this other effect does at a typical size.
+    /// The effect explains no more than this other effect does, which sound robots have too.
     UsualInstead(Effect),
     /// A gain with an offset explains as much as the curve of the sensor.
     Straight,

@@ -186,7 +186,9 @@ impl DiscoverCableResult {
             return format!("Nothing can be told: {}. {}", missing.cause, missing.advice);
         }
         let all: Vec<&EffectResult> = self.effects.iter().collect();
-        let wander_n = self.wander_n.filter(|wander_n| *wander_n > 0.0).map(newtons);
+        // Part of a rest that is not explained looks like a wander.
+        let is_explained = matches!(self.verdict, Verdict::Complete | Verdict::Extended);
+        let wander_n = self.wander_n.filter(|wander_n| is_explained && *wander_n > 0.0).map(newtons);
         let mut text = match self.verdict {
             Verdict::Complete if is_beside_rest => "Nothing of what is left of the wrench is told to be of this cable.".to_owned(),
             Verdict::Extended if is_beside_rest => {

@@ -147,7 +147,7 @@ impl Refusal {
                 "with its values it is no more than a zero, a gain or what the start of the run has stored".to_owned()
             }
             Self::UsualInstead(usual) => {
-                format!("{} of a size that robots usually have leaves little for it to explain", usual.kind())
+                format!("{}, which sound robots have too, leaves little for it to explain", usual.kind())
             }
             Self::Straight => "a gain with an offset of the sensor explains as much".to_owned(),
             Self::Bent(signal) => {
