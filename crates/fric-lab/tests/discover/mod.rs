@@ -152,6 +152,23 @@ fn from_no_friction_it_climbs_to_the_model_of_the_paper() {
     assert!((viscous - 1.0).abs() < 0.05, "{viscous}");
 }
 
+/// Pulleys whose friction differs, as everywhere, look a little like another exponent of presliding; a drift of the friction looks like a warm-up that takes much
+/// longer than the log.
+#[test]
+fn the_plainer_of_two_names_that_explain_as_much_is_told() {
+    let asymmetry =
+        Case { noise_ratio: 0.5, seed: 670_000_055, ..Case::hiding(Group::Single, &[Effect::DirectionAsymmetry]) };
+    let drift = Case {
+        strength_ratio: 0.25,
+        noise_ratio: 0.5,
+        seed: 670_000_088,
+        ..Case::hiding(Group::Single, &[Effect::FrictionDrift])
+    };
+    for case in [asymmetry, drift] {
+        assert_found(&case, Verdict::Extended);
+    }
+}
+
 #[test]
 fn a_wander_of_the_reference_gets_no_name() {
     let case = Case { reference_wander_n: 0.01, seed: 70_002, ..Case::of(Group::Wander) };

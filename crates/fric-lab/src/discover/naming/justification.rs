@@ -68,16 +68,8 @@ impl Search<'_, '_> {
     /// Whether strong evidence for an effect is missing once another effect of a typical size is in the model, or friction that every robot has and that
     /// this log cannot distinguish.
     fn usual_instead(&mut self, found: &[Effect], effect: Effect, inflation: f64) -> Option<Refusal> {
-        // A zero and a gain are what such an effect degenerates to.
-        let is_straight = [Effect::SensorOffset, Effect::SensorGain].contains(&effect);
         let is_usual = |(other, refusal): (&Effect, &Refusal)| {
-            let counts = match refusal {
-                Refusal::Usual => true,
-                Refusal::Degenerate => !is_straight,
-                Refusal::Open(_) => other.is_friction(),
-                _ => false,
-            };
-            (counts && !found.contains(other)).then_some(*other)
+            (counts_as_usual(*refusal, *other, effect) && !found.contains(other)).then_some(*other)
         };
         let usual: Vec<Effect> = self.refused.iter().filter_map(is_usual).collect();
         let others: Vec<Effect> = found.iter().copied().filter(|other| *other != effect).collect();
@@ -88,17 +80,37 @@ impl Search<'_, '_> {
         })
     }
 
-    /// Whether strong evidence for a bent sensor is missing beside a straight one: where the loads are few or uneven, a curve does what a gain with an
-    /// offset would.
+    /// Whether another effect explains as much in the place of one, at a size that sound robots have.
+    pub(super) fn usual_in_place_of(&mut self, found: &[Effect], named: &Named) -> Option<Refusal> {
+        let others: Vec<Effect> = found.iter().copied().filter(|other| *other != named.effect).collect();
+        let enough = self.delta_bic(&named.without, &named.with, named.inflation) + STRONG_BIC;
+        let mut rivals = self.round(&others);
+        rivals.retain(|(other, _)| *other != named.effect);
+        let is_usual = |(other, trial): &(Effect, Trial)| {
+            let is_more = effects::of(*other).is_some_and(|lab| (lab.is_more_than_usual)(&trial.values, &self.around));
+            !is_more && counts_as_usual(Refusal::usual(*other), *other, named.effect)
+        };
+        rivals.retain(is_usual);
+        let as_good =
+            rivals.into_iter().find(|(_, trial)| self.delta_bic(&named.without, trial, named.inflation) < enough);
+        as_good.map(|(usual, _)| Refusal::UsualInstead(usual))
+    }
+
+    /// Whether strong evidence for a curve is missing beside a straight line. Where the loads are few or uneven, a bent sensor does what a gain with an offset
+    /// would; a warm-up that the log is too short for is a drift.
     fn straight(&mut self, others: &[Effect], effect: Effect, inflation: f64) -> Option<Refusal> {
-        if effect != Effect::SensorNonlinearity {
-            return None;
-        }
+        let of_a_line: &[Effect] = match effect {
+            Effect::SensorNonlinearity => &[Effect::SensorGain, Effect::SensorOffset],
+            Effect::SensorWarmup => &[Effect::SensorDrift],
+            Effect::FrictionWarmup => &[Effect::FrictionDrift],
+            _ => return None,
+        };
         let model = self.fit(others);
-        let of_a_line = [(Effect::SensorGain, false), (Effect::SensorOffset, self.bench.has_zero(&model.free))];
-        let is_missing =
-            |(of, is_there): &(Effect, bool)| !is_there && !others.contains(of) && !has(*of, &model.values);
-        let missing: Vec<Effect> = of_a_line.into_iter().filter(is_missing).map(|(of, _)| of).collect();
+        let is_there = |of: &Effect| {
+            let is_zero = *of == Effect::SensorOffset && self.bench.has_zero(&model.free);
+            is_zero || others.contains(of) || has(*of, &model.values)
+        };
+        let missing: Vec<Effect> = of_a_line.iter().copied().filter(|of| !is_there(of)).collect();
         let mut line = others.to_vec();
         self.add(&mut line, &missing);
         let straight = self.fit(&line);
@@ -176,6 +188,17 @@ impl Search<'_, '_> {
         let nearest = |other: &usize| own.iter().map(|own| correlation(*own, *other)).fold(0.0, f64::max);
         let other = others.into_iter().max_by(|one, other| nearest(one).total_cmp(&nearest(other)))?;
         Some(all[other].1.parameter)
+    }
+}
+
+/// Whether an effect that is refused so may be what is taken for a name, as on a sound robot.
+fn counts_as_usual(refusal: Refusal, of: Effect, name: Effect) -> bool {
+    match refusal {
+        Refusal::Usual => true,
+        // A zero and a gain are what such an effect degenerates to.
+        Refusal::Degenerate => ![Effect::SensorOffset, Effect::SensorGain].contains(&name),
+        Refusal::Open(_) => of.is_friction(),
+        _ => false,
     }
 }
 

@@ -160,6 +160,13 @@ impl<'b, 'a> Search<'b, 'a> {
                 break;
             }
         }
+        while let Some((effect, usual)) =
+            named.iter().find_map(|named| Some((named.effect, self.usual_in_place_of(&found, named)?)))
+        {
+            found.retain(|of| *of != effect);
+            self.refused.insert(effect, usual);
+            named = self.pass(&mut found);
+        }
         for (place, named) in named.iter_mut().enumerate() {
             named.runner_up = self.alternative(&found, place);
             if let Some(lagging) = self.lag_in_place_of(&found, named.effect) {

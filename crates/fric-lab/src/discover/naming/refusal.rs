@@ -35,7 +35,7 @@ pub enum Refusal {
     Degenerate,
     /// The effect explains no more than this other effect does, which sound robots have too.
     UsualInstead(Effect),
-    /// A gain with an offset explains as much as the curve of the sensor.
+    /// A straight line explains as much as the effect's curve: a gain with an offset, or a drift.
     Straight,
     /// The rest would vanish if the effect's size varied with this condition, so its law is a different one.
     Bent(&'static str),

@@ -149,7 +149,7 @@ impl Refusal {
             Self::UsualInstead(usual) => {
                 format!("{}, which sound robots have too, leaves little for it to explain", usual.kind())
             }
-            Self::Straight => "a gain with an offset of the sensor explains as much".to_owned(),
+            Self::Straight => "a straight line explains as much as its curve: a gain with an offset, or a drift".to_owned(),
             Self::Bent(signal) => {
                 format!(
                     "what is left would go away if its size went with the {}: its law is another one",
