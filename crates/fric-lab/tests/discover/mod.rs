@@ -152,21 +152,22 @@ fn from_no_friction_it_climbs_to_the_model_of_the_paper() {
     assert!((viscous - 1.0).abs() < 0.05, "{viscous}");
 }
 
-/// Pulleys whose friction differs, as everywhere, look a little like another exponent of presliding; a drift of the friction looks like a warm-up that takes much
-/// longer than the log.
+/// A drift of the friction looks like a warm-up that takes much longer than the log.
 #[test]
-fn the_plainer_of_two_names_that_explain_as_much_is_told() {
-    let asymmetry =
-        Case { noise_ratio: 0.5, seed: 670_000_055, ..Case::hiding(Group::Single, &[Effect::DirectionAsymmetry]) };
-    let drift = Case {
-        strength_ratio: 0.25,
-        noise_ratio: 0.5,
-        seed: 670_000_088,
-        ..Case::hiding(Group::Single, &[Effect::FrictionDrift])
-    };
-    for case in [asymmetry, drift] {
-        assert_found(&case, Verdict::Extended);
-    }
+fn a_drift_is_no_endless_warm_up() {
+    let hidden = Case::hiding(Group::Single, &[Effect::FrictionDrift]);
+    assert_found(&Case { strength_ratio: 0.25, noise_ratio: 0.5, seed: 670_000_088, ..hidden }, Verdict::Extended);
+}
+
+/// Pulleys whose friction differs, as everywhere, look a little like another exponent of presliding, which comes out 2.9 standard errors from 1; beside
+/// friction that grows with the rest a Stribeck effect of half a per cent is 2.2 from 0.
+#[test]
+#[ignore = "minutes; `make soak` runs it"]
+fn a_name_is_not_within_a_few_standard_errors_of_nothing() {
+    let asymmetry = Case::hiding(Group::Single, &[Effect::DirectionAsymmetry]);
+    assert_found(&Case { noise_ratio: 0.5, seed: 670_000_055, ..asymmetry }, Verdict::Extended);
+    let pair = Case::hiding(Group::Pair, &[Effect::SensorDrift, Effect::DwellStiction]);
+    assert_found(&Case { seed: 670_000_310, ..pair }, Verdict::Extended);
 }
 
 #[test]

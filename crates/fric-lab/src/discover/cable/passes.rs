@@ -1,6 +1,7 @@
 //! The passes over one cable: fit, name what is missing, fit the extended model, assess what is left, and start again from there.
 
 use fric_core::effects::Effect;
+use nalgebra::DVector;
 
 use super::final_fit::Fitted;
 use super::{BELIEVED_RATIO, CableLog};
@@ -8,13 +9,14 @@ use crate::candidates::catalogue as candidates;
 use crate::certainty::assumed;
 use crate::discover::effort::Effort;
 use crate::discover::given::determined_beside;
+use crate::discover::naming::evidence::in_standard_errors;
 use crate::discover::naming::justification::is_at_end;
-use crate::discover::naming::{Naming, Refusal, Search};
+use crate::discover::naming::{LEAST_AWAY, Naming, Refusal, Search};
 use crate::discover::rest::places::Place;
 use crate::discover::rest::stretch::{Stretch, stretch_of_cable};
 use crate::discover::rest::{WORTH, wander};
 use crate::discover::workbench::{self, Trial, Workbench};
-use crate::fit::{HALF_INTERVAL, Parameter};
+use crate::fit::Parameter;
 use crate::samples::noise::white_noise_apart;
 use crate::search::problem::Problem;
 use crate::search::solve::squares;
@@ -129,8 +131,8 @@ impl CableLog<'_> {
         self.may_be_absent(counts, fitted, effect).then_some(Refusal::Absent)
     }
 
-    /// Whether the intervals of the parameters that make an effect hold the values at which it does nothing. Parameters such as a speed, which do nothing
-    /// by themselves, do not matter; nor does the error by a time that is assumed, which scales an effect and removes none.
+    /// Whether the parameters that make an effect are too near to the values at which it does nothing, by their errors. Parameters such as a speed, which do
+    /// nothing by themselves, do not matter; nor does the error by a time that is assumed, which scales an effect and removes none.
     fn may_be_absent(&self, counts: &[bool], fitted: &Fitted, effect: Effect) -> bool {
         let bench = self.bench(counts);
         let all = Problem { used: counts.to_vec(), ..bench.problem(&fitted.parameters, None) };
@@ -142,17 +144,16 @@ impl CableLog<'_> {
         }
         let squares_without = squares(&all, &[neutral]);
         let own = fitted.parameters.iter().enumerate().filter(|(_, parameter)| of_effect.contains(parameter));
-        let mut makers = own.filter(|(_, parameter)| {
+        let makes = |(_, parameter): &(usize, &Parameter)| {
             let mut alone = neutral;
             alone[parameter.place()] = fitted.values[parameter.place()];
             squares(&all, &[alone]).to_bits() != squares_without.to_bits()
-        });
-        let holds_neutral = |(place, parameter): (usize, &Parameter)| {
-            let off = (fitted.values[parameter.place()] - neutral[parameter.place()]).abs();
-            off <= HALF_INTERVAL * covariance[(place, place)].sqrt()
         };
-        let first = makers.next();
-        first.is_some_and(holds_neutral) && makers.all(holds_neutral)
+        let makers: Vec<(usize, &Parameter)> = own.filter(makes).collect();
+        let places: Vec<usize> = makers.iter().map(|(place, _)| *place).collect();
+        let off = |(_, parameter): &(usize, &Parameter)| fitted.values[parameter.place()] - neutral[parameter.place()];
+        let off = DVector::from_iterator(makers.len(), makers.iter().map(off));
+        !makers.is_empty() && in_standard_errors(&off, &covariance, &places).is_some_and(|away| away < LEAST_AWAY)
     }
 
     /// Names what would be missing if the model with the effects that `search` has found were the given one.

@@ -23,6 +23,12 @@ pub fn inflation(bench: &Workbench<'_>, model: &Trial, of: &[Parameter]) -> f64 
         .fold(1.0, |most, ratio| if ratio.is_finite() { most.max(ratio) } else { f64::INFINITY })
 }
 
+/// Returns the length of some parameters' differences together in standard errors, by their places in a covariance; `None` if that is singular.
+pub fn in_standard_errors(differences: &DVector<f64>, covariance: &DMatrix<f64>, places: &[usize]) -> Option<f64> {
+    let inverse = inverse_of_normal(&covariance.select_rows(places).select_columns(places))?;
+    Some((differences.transpose() * inverse * differences)[(0, 0)].sqrt())
+}
+
 /// The memory of what some columns leave in a linear least-squares problem, taken in sample by sample.
 pub struct Memory {
     /// Which of the numbers of a sample are the columns.

@@ -18,7 +18,7 @@ pub enum Refusal {
     Unjudged,
     /// A parameter is stuck at the bound of its range.
     AtBound,
-    /// The intervals of its parameters hold the values at which it does nothing.
+    /// Its parameters are within a few standard errors of the values at which it does nothing.
     Absent,
     /// What is left without it is no more than noise, as far as the log shows the noise.
     WithinNoise,

@@ -127,7 +127,7 @@ impl Refusal {
             Self::WithinNoise => {
                 "what is left without it is no more than noise, as far as the log shows what its noise is".to_owned()
             }
-            Self::Absent => "its interval holds the value at which it does nothing".to_owned(),
+            Self::Absent => "its value is within four standard errors of doing nothing".to_owned(),
             Self::Open(other) => {
                 let of = other.effect().map_or_else(String::new, |effect| format!(" of {}", effect.kind()));
                 format!("the log cannot tell it from {}{of}", name_of(other.row().key))

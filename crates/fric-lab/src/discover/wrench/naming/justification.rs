@@ -6,8 +6,8 @@ use fric_core::effects::Effect;
 
 use super::doubt::is_of_one_sensor;
 use super::standing::{Standing, disagreement, standings};
-use super::{LEAST_ALIKE, LEAST_AWAY, Named, Search, is_one_of_many, without};
-use crate::discover::naming::{LEAST_SIZE, Refusal, STRONG_BIC};
+use super::{LEAST_ALIKE, Named, Search, is_one_of_many, without};
+use crate::discover::naming::{LEAST_AWAY, LEAST_SIZE, Refusal, STRONG_BIC};
 use crate::discover::wrench::bench::Trial;
 use crate::discover::wrench::candidate::Candidate;
 

@@ -32,7 +32,7 @@ use super::covariance::whitening;
 use super::geometry::Geometry;
 use super::screen::Promise;
 use crate::discover::cable::BELIEVED_RATIO;
-use crate::discover::naming::Refusal;
+use crate::discover::naming::{LEAST_AWAY, Refusal};
 use crate::discover::rest::WORTH;
 
 pub use self::doubt::{is_better, sensors_doubted};
@@ -43,8 +43,6 @@ const MOST: usize = 16;
 const ROUNDS: usize = 6;
 /// Distance from its minimum to which a model with a candidate is optimised, in standard errors.
 const NEAR_ERRORS: f64 = 0.5;
-/// The parameters of a name together are at least this many standard errors away from their neutral values.
-const LEAST_AWAY: f64 = 4.0;
 /// Minimum number of cables with the same effect that may become one effect of all cables, of other cables with an effect that make it no surprise on one more,
 /// and of sensors in doubt that are judged together.
 const LEAST_ALIKE: usize = 3;

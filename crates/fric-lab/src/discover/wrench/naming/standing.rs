@@ -4,6 +4,7 @@ use fric_core::effects::Effect;
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::catalogue::fitted;
+use crate::discover::naming::evidence::in_standard_errors;
 use crate::discover::wrench::bench::{Bench, Model, Trial, Unknown};
 use crate::discover::wrench::candidate::Candidate;
 use crate::fit::Parameter;
@@ -44,9 +45,7 @@ pub fn standings(bench: &Bench<'_>, trial: &Trial, candidates: &[Candidate]) -> 
             places.iter().map(|place| covariance[(*place, *place)] / independent[(*place, *place)]).fold(1.0, f64::max);
         let away = places.iter().map(|place| away_from_neutral(&trial.model, &unknowns[*place]));
         let away = DVector::from_iterator(places.len(), away);
-        let inverse = inverse_of_normal(&covariance.select_rows(&places).select_columns(&places))?;
-        let away = (away.transpose() * inverse * &away)[(0, 0)].sqrt();
-        Some(Standing { inflation, away })
+        Some(Standing { inflation, away: in_standard_errors(&away, covariance, &places)? })
     };
     candidates.iter().map(|candidate| of(candidate).unwrap_or(Standing::UNDETERMINED)).collect()
 }
