@@ -37,8 +37,9 @@ fn is_more_than_usual(values: &Values, around: &Around) -> bool {
 }
 
 fn starts(around: &Around) -> Vec<Start> {
-    // 1 % of the mean tension at twice the mean tension. At a curvature of 0 the reference has no influence.
-    vec![vec![("curvature_per_n", 0.01 / around.mean_tension_n), ("reference_n", around.mean_tension_n)]]
+    // At a curvature of 0 the reference has no influence, and waits until the curvature has reached its minimum. Varied together from the start, the two
+    // may lead away from a strong curve.
+    vec![vec![("curvature_per_n", 0.0), ("reference_n", around.mean_tension_n)]]
 }
 
 fn typical(scale: &mut Sizing<'_>) -> Start {

@@ -159,6 +159,19 @@ fn a_drift_is_no_endless_warm_up() {
     assert_found(&Case { strength_ratio: 0.25, noise_ratio: 0.5, seed: 670_000_088, ..hidden }, Verdict::Extended);
 }
 
+/// A curve that is strong at the greatest loads, which the log has a few times: a search from a weak curve led away from it, and jumps at these times took its
+/// place.
+#[test]
+#[ignore = "minutes; `make soak` runs it"]
+fn a_strong_curve_is_named_beside_another_effect() {
+    for (other, seed) in [(Effect::CableElasticity, 670_000_327), (Effect::PulleyDefect, 670_000_342)] {
+        let hidden = [other, Effect::SensorNonlinearity];
+        let (found, _) = look(&Case { seed, ..Case::hiding(Group::Pair, &hidden) });
+        let named: Vec<Effect> = found.findings.iter().map(|finding| finding.effect).collect();
+        assert!(named.len() == 2 && hidden.iter().all(|effect| named.contains(effect)), "{named:?}");
+    }
+}
+
 /// Pulleys whose friction differs, as everywhere, look a little like another exponent of presliding, which comes out 2.9 standard errors from 1; beside
 /// friction that grows with the rest a Stribeck effect of half a per cent is 2.2 from 0.
 #[test]

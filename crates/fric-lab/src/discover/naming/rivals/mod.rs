@@ -134,9 +134,14 @@ pub fn best_rival(
         // Several columns easily explain half of what a name does.
         let may_bend = law.len() == 1 && excess > NEGLIGIBLE * of_noise;
         if replaces.is_empty() && may_bend && together - by_name > enough.max(MOST_BENT * excess).max(*least) {
-            // The law wins if it explains much of the rest, more than chance would, and shares what it explains with one of the names.
+            // The law wins if it explains much of the rest, more than chance would, shares what it explains with one of the names, and explains more in its
+            // place. A jump that is placed where a name explains most explains a part of that.
             let shares = all.iter().map(|name| (beside(*name), *name)).min_by(|one, other| one.0.total_cmp(&other.0));
             let (_, name) = shares.filter(|(share, _)| *share < LEAST_BESIDE_RATIO)?;
+            let in_its_place = gain(&[&others(name)[..], law].concat());
+            if in_its_place <= by_name {
+                return None;
+            }
             return Some(Rival { signal, replaces: vec![name], gain: together });
         }
         if *nearly_ratio > 0.0 && replaces.is_empty() && excess > WORTH * of_noise {
