@@ -2,8 +2,8 @@
 
 use fric_core::effects::Effect;
 
-use super::bench::Model;
 use super::geometry::Geometry;
+use super::model::Model;
 use crate::candidates::catalogue::{fitted, has};
 use crate::candidates::ripple::period_of;
 use crate::discover::naming::Refusal;

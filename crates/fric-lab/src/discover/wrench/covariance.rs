@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::bench::{Bench, Model, Trial};
+use super::bench::{Bench, Trial};
+use super::model::Model;
 
 /// With all components on one scale, a direction with less than this fraction of the greatest variance contains only rounding errors.
 const LEAST_VARIANCE_RATIO: f64 = 1e-9;

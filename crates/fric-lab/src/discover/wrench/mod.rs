@@ -13,6 +13,7 @@ mod candidate;
 mod covariance;
 mod geometry;
 mod lengths;
+mod model;
 mod naming;
 mod report;
 mod screen;
@@ -27,6 +28,7 @@ use nalgebra::{Matrix6, Vector6};
 use self::bench::{Bench, Trial};
 use self::covariance::{reweighted, whitening};
 use self::geometry::Description;
+use self::model::Model;
 use self::naming::{Naming, Search};
 use self::sensors::Sensors;
 use super::extended::extended;
@@ -133,7 +135,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         stop: progress.stop_flag(),
     };
     let given =
-        bench::Model { values: first.values, free: first.free, alike: Vec::new(), changes: bench.description.fitted() };
+        Model { values: first.values, free: first.free, alike: Vec::new(), changes: bench.description.fitted() };
     bench.whitening = whitening(&bench, &given).ok_or_else(too_short)?;
     let base = bench.fit(&given, AT_MINIMUM);
     let nothing = Naming::start(base.clone(), &bench.whitening, Vec::new());
@@ -207,14 +209,14 @@ fn searched<'a>(
 
 /// Fits a model in which friction that the samples do not determine beside the names has its given values; with these in what grossly contradicts the samples,
 /// it is varied too.
-fn fit_with_given(bench: &Bench<'_>, model: &bench::Model) -> Trial {
+fn fit_with_given(bench: &Bench<'_>, model: &Model) -> Trial {
     let held = bench.fit(&with_given(bench, model), AT_MINIMUM);
     let most = GROSS_CONTRADICTION * bench.judged(model.clone()).training;
     if held.training <= most { held } else { bench.fit(model, AT_MINIMUM) }
 }
 
 /// Returns a model in which friction that the samples do not determine beside the names has its given values and is not varied.
-fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
+fn with_given(bench: &Bench<'_>, model: &Model) -> Model {
     let (_, all) = bench.with_problem(model, bench.used(false), |problem| {
         crate::certainty::undetermined::vagueness(problem, &model.values)
     });
@@ -228,10 +230,10 @@ fn with_given(bench: &Bench<'_>, model: &bench::Model) -> bench::Model {
 }
 
 /// Whether a model leaves more of the wrench than another one on the held-out samples, by more than its noise may differ.
-fn leaves_more(bench: &Bench<'_>, before: &bench::Model, after: &bench::Model) -> bool {
+fn leaves_more(bench: &Bench<'_>, before: &Model, after: &Model) -> bool {
     let plain = Bench { whitening: Matrix6::identity(), ..bench.clone() };
     let held_out = bench.used(true);
-    let components = |model: &bench::Model| WrenchDeviation::of(&plain.deviations(model), &held_out).components;
+    let components = |model: &Model| WrenchDeviation::of(&plain.deviations(model), &held_out).components;
     let Some(noise) = plain.noise(before) else { return false };
     let (after, before) = (components(after), components(before));
     let squares = |of: [f64; 6]| -> f64 {

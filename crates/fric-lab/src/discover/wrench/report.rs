@@ -6,9 +6,10 @@ use fric_core::robot::PlatformOptions;
 use fric_core::robot::edit::PlatformEdit;
 use nalgebra::{DMatrix, Matrix6};
 
-use super::bench::{Bench, Model as WrenchModel, Trial, Unknown};
+use super::bench::{Bench, Trial};
 use super::candidate::Candidate;
 use super::geometry::{Geometry, entries};
+use super::model::{Model as WrenchModel, Unknown};
 use super::naming::{Named, Naming};
 use super::{Edits, GeometryFinding, WrenchDeviation, WrenchDiscovery, too_short};
 use crate::certainty::determined::HALF_INTERVAL;

@@ -9,10 +9,11 @@ use super::{LEAST_ALIKE, MOST, NEAR_ERRORS, Naming, Search};
 use crate::candidates::catalogue::fitted;
 use crate::discover::naming::evidence::delta_bic;
 use crate::discover::naming::{NEGLIGIBLE, STRONG_BIC};
-use crate::discover::wrench::bench::{Bench, Model, Trial};
+use crate::discover::wrench::bench::{Bench, Trial};
 use crate::discover::wrench::candidate::Candidate;
 use crate::discover::wrench::covariance::{geometric_mean_square, reweighted};
 use crate::discover::wrench::geometry::Geometry;
+use crate::discover::wrench::model::Model;
 use crate::replay::WrenchReference;
 
 /// Gains that differ by less than this fraction agree. Under a wrong mass the gains of the simulated robots in the tests do; those of the recording in

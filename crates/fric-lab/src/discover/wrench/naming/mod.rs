@@ -26,10 +26,11 @@ use std::collections::BTreeMap;
 use nalgebra::Matrix6;
 
 use self::standing::standings;
-use super::bench::{Bench, Model, Trial};
+use super::bench::{Bench, Trial};
 use super::candidate::Candidate;
 use super::covariance::whitening;
 use super::geometry::Geometry;
+use super::model::Model;
 use super::screen::Promise;
 use crate::discover::cable::BELIEVED_RATIO;
 use crate::discover::naming::{LEAST_AWAY, Refusal};

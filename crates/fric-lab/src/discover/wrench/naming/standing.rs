@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::catalogue::fitted;
 use crate::discover::naming::evidence::in_standard_errors;
-use crate::discover::wrench::bench::{Bench, Model, Trial, Unknown};
+use crate::discover::wrench::bench::{Bench, Trial};
 use crate::discover::wrench::candidate::Candidate;
+use crate::discover::wrench::model::{Model, Unknown};
 use crate::fit::Parameter;
 use crate::search::gram::inverse_of_normal;
 
