@@ -144,12 +144,12 @@ impl CableLog<'_> {
         }
         let squares_without = squares(&all, &[neutral]);
         let own = fitted.parameters.iter().enumerate().filter(|(_, parameter)| of_effect.contains(parameter));
-        let makes = |(_, parameter): &(usize, &Parameter)| {
+        let has_an_effect = |(_, parameter): &(usize, &Parameter)| {
             let mut alone = neutral;
             alone[parameter.place()] = fitted.values[parameter.place()];
             squares(&all, &[alone]).to_bits() != squares_without.to_bits()
         };
-        let makers: Vec<(usize, &Parameter)> = own.filter(makes).collect();
+        let makers: Vec<(usize, &Parameter)> = own.filter(has_an_effect).collect();
         let places: Vec<usize> = makers.iter().map(|(place, _)| *place).collect();
         let off = |(_, parameter): &(usize, &Parameter)| fitted.values[parameter.place()] - neutral[parameter.place()];
         let off = DVector::from_iterator(makers.len(), makers.iter().map(off));
