@@ -7,6 +7,7 @@ mod direction;
 mod motion;
 mod order;
 mod scale;
+mod sums;
 
 pub(crate) use cause::cause_of_gain;
 use direction::Direction;

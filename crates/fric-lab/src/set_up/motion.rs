@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use fric_core::{CableParams, Pose, RobotParams, Sample};
 
+use super::sums::Sums;
 use crate::text::{listed, significant};
 
 /// Time over which the length changes between two comparisons, s: the noise of a length is small beside its change then, and so is a delay of the speed of
@@ -58,60 +59,6 @@ const LENGTH_CAUSES: [(f64, &str); 7] = [
     (2.0, "a block that halves the motion"),
     (0.5, "a block that doubles the motion"),
 ];
-
-/// Sums over quantities that belong together, one of each in a sample.
-#[derive(Clone, Copy, Debug)]
-struct Sums<const COUNT: usize> {
-    count: f64,
-    totals: [f64; COUNT],
-    products: [[f64; COUNT]; COUNT],
-}
-
-impl<const COUNT: usize> Default for Sums<COUNT> {
-    fn default() -> Self {
-        Self { count: 0.0, totals: [0.0; COUNT], products: [[0.0; COUNT]; COUNT] }
-    }
-}
-
-impl<const COUNT: usize> Sums<COUNT> {
-    fn add(&mut self, sample: [f64; COUNT]) {
-        self.count += 1.0;
-        for ((total, products), one) in self.totals.iter_mut().zip(&mut self.products).zip(sample) {
-            *total += one;
-            products.iter_mut().zip(sample).for_each(|(product, other)| *product += one * other);
-        }
-    }
-
-    /// Returns the same with products about the means.
-    fn centred(mut self) -> Self {
-        for (products, one) in self.products.iter_mut().zip(self.totals) {
-            for (product, other) in products.iter_mut().zip(self.totals) {
-                *product -= one * other / self.count.max(1.0);
-            }
-        }
-        self
-    }
-
-    /// Adds the products of another stretch.
-    fn join(&mut self, other: &Self) {
-        self.count += other.count;
-        for (products, more) in self.products.iter_mut().zip(&other.products) {
-            products.iter_mut().zip(more).for_each(|(product, more)| *product += more);
-        }
-    }
-
-    /// Whether a quantity is so large, rms.
-    fn is_beyond(&self, quantity: usize, least: f64) -> bool {
-        self.products[quantity][quantity] > self.count * least * least
-    }
-
-    /// Returns the ratio of two quantities if they are proportional to this squared correlation.
-    fn ratio(&self, one: usize, other: usize, correlation: f64) -> Option<f64> {
-        let [own, others, both] =
-            [(one, one), (other, other), (one, other)].map(|(row, column)| self.products[row][column]);
-        (both * both > correlation * own * others).then(|| (own / others).sqrt().copysign(both))
-    }
-}
 
 /// Quantities of a step: the way by the speed and by the length, and the latter without its sign, m.
 const BY_SPEED: usize = 0;
