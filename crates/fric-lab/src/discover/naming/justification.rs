@@ -80,8 +80,11 @@ impl Search<'_, '_> {
         })
     }
 
-    /// Whether another effect explains as much in the place of one, at a size that sound robots have.
+    /// Whether another effect explains as much in the place of one, at a size that sound robots have. Friction that every model has is not replaced.
     pub(super) fn usual_in_place_of(&mut self, found: &[Effect], named: &Named) -> Option<Refusal> {
+        if named.effect.is_friction() {
+            return None;
+        }
         let others: Vec<Effect> = found.iter().copied().filter(|other| *other != named.effect).collect();
         let enough = self.delta_bic(&named.without, &named.with, named.inflation) + STRONG_BIC;
         let mut rivals = self.round(&others);

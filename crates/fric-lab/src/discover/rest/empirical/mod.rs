@@ -6,9 +6,9 @@
 //! 1. *Fit.* The shares of a table and the parameters of the model are fitted together, by penalised least squares on the training samples: `Σr² +
 //!    λ·Σ(second differences)²`. Condition, kind and λ are chosen by cross-validation over the blocks. There a table over the load reads the load that
 //!    the sensor would show if the model were right ([`loads`]).
-//! 2. *Keep.* A table must remove [`LEAST_CLOSED`] of the squares above the noise in the cross-validation and on the held-out samples, with a gain beyond the scatter of their
-//!    blocks. It must also hold in other conditions: for each third of every other condition, and of the time, a table learned outside this third
-//!    must remove enough inside it, as far as it has covered its own condition.
+//! 2. *Keep.* A table must remove [`LEAST_CLOSED`] of the squares above the noise in the cross-validation and on the held-out samples, on the latter with
+//!    a gain beyond the scatter of their blocks. It must also hold in other conditions: for each third of every other condition, and of the time, a table
+//!    learned outside this third must remove enough inside it, as far as it has covered its own condition.
 //! 3. A rest that another cable's signals explain better gets no table.
 //!
 //! All fits use the cycle's own derivatives, so a table runs in the cycle exactly as it was judged.

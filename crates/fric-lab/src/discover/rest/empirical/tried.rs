@@ -65,7 +65,7 @@ impl Tried {
         let noise = read.held_out.iter().filter(|held_out| !**held_out).count() as f64 * noise_n * noise_n;
         let before = all.squares();
         let closed = (before - predicted) / (before - noise);
-        Some(Self { layout: layout.clone(), penalty, closed, rows })
+        (before > noise).then(|| Self { layout: layout.clone(), penalty, closed, rows })
     }
 
     /// Whether a table that was learned without a part of another condition holds in this part.
