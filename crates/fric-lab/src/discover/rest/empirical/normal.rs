@@ -7,7 +7,7 @@ use crate::search::gram::inverse_of_normal;
 
 /// Penalty on the size of the table, on the same scale. It assigns to friction what both table and friction can explain.
 const RIDGE: f64 = 1e-6;
-/// The same on the sum of the changes. A change that is the same everywhere is one of μ, or of the zero. With less, μ and the table grow against each other.
+/// The same on the sum of the changes. A change that is the same everywhere is one of μ, or of the zero. Without it, μ and the table grow against each other. Half and double are not tried.
 const OF_SUM: f64 = 0.01;
 
 /// Index of the last share, the distance from the first one to it.
