@@ -344,10 +344,21 @@ def test_effects_that_come_and_go_are_told():
 def test_few_logs_are_no_good_news():
     few = table(tuple(column[:5] for column in made(0, "none")[:3]) + (0,))
     found = fleet.trend(few)
-    assert found.alarms == () and "too few logs with a date, 6 of each robot are needed" in str(found)
+    assert found.alarms == () and "too few logs of different dates, 6 of each robot are needed" in str(found)
     assert "cannot tell whether anything has changed" in found.to_html() and "Nothing: all parameters" not in found.to_html()
     undated = few.set_column(few.schema.get_field_index("start"), "start", pyarrow.nulls(few.num_rows, few.schema.field("start").type))
     assert fleet.trend(undated, limits={"mu": (None, 0.05)}).series == ()
+
+
+def test_logs_of_few_dates_have_no_order_among_them():
+    """Logs of one recording session, or copies with one start, cannot tell a change; two sessions tell a step, and no slope."""
+    _, value, error, _ = made(4, "none")
+    one = fleet.trend(table((np.zeros(60), value, error, 0)))
+    assert one.alarms == () and "too few logs of different dates" in str(one) and "too few dates" in one.to_html()
+    later = np.where(np.arange(60) < 30, 0.0, 30.0)
+    assert fleet.trend(table((later, value, error, 0))).alarms == ()
+    (alarm,) = fleet.trend(table((later, value + 2e-3 * (later > 0), error, 0))).alarms
+    assert [(change.kind, change.earliest == change.latest) for change in alarm.changes] == [("step", True)]
 
 
 def test_a_replaced_pulley_ends_a_slope():

@@ -7,6 +7,7 @@ use fric_log::log::Log;
 use fric_log::signals::Part;
 use fric_work::provenance::shown_path;
 use fric_work::runs::{Runs, unread};
+use fric_work::supervisor::Supervisor;
 
 use crate::failure::{Failure, Outcome};
 use crate::model::{self, Model};
@@ -35,7 +36,8 @@ pub fn find_model(named: Option<&Path>, logs: &[PathBuf]) -> Outcome<Model> {
     Err(model::missing())
 }
 
-/// Reads the same part of all logs, each as a log of its own.
+/// Reads the same part of all logs, each as a log of its own. Where robot files are attached to the logs and none was named, each log's own one says where its
+/// signals are and which load hangs on its cables.
 pub fn read<'a>(
     logs: &[PathBuf],
     part: Part,
@@ -47,9 +49,35 @@ pub fn read<'a>(
     let names = logs.iter().map(|log| shown_path(log)).collect();
     let mut runs = Runs::new(&model.robot, &model.origin, reference, per_log, names, watch)?;
     for log in logs {
+        let (told, source) = (format!("`{}`", log.display()), Log::open(&[log])?);
+        let own = if model.is_attached() { Model::attached(&source)? } else { None };
+        if let Some(own) = &own {
+            watch.warn(&compare(&told, own, model)?)?;
+        }
         // Signals that are not compared with are not read.
-        let mut reader = model.reader(Log::open(&[log])?, part, Some(unread(reference)))?;
-        runs.add(&format!("`{}`", log.display()), &mut reader, watch)?;
+        let mut reader = own.as_ref().unwrap_or(model).reader(source, part, Some(unread(reference)))?;
+        runs.add(&told, &mut reader, watch)?;
     }
     Ok(runs)
+}
+
+/// Checks that the robot file attached to a log describes a recording like that of the first one. Returns a warning if its machine is another, because that of
+/// the first one is used.
+fn compare(told: &str, own: &Model, first: &Model) -> Outcome<Vec<String>> {
+    let [of_own, of_first] = [own, first].map(|model| model.robot.options());
+    let is_known = |model: &Model| model.robot.params().known_reference().is_some();
+    let differs = if own.robot.cable_names() != first.robot.cable_names() {
+        Some("has other cables than")
+    } else if is_known(own) != is_known(first) {
+        Some("states the load on the cables, or not, other than")
+    } else {
+        None
+    };
+    if let Some(differs) = differs {
+        return Err(Failure::new(format!("{told}: the robot file attached to it {differs} that of the first log"))
+            .advise("Name one robot file for all logs with --model."));
+    }
+    let is_same_machine = of_own.cable == of_first.cable && of_own.platform == of_first.platform;
+    let warning = format!("{told}: the robot file attached to it has other values than that of the first log, which are used");
+    Ok(if is_same_machine { Vec::new() } else { vec![warning] })
 }

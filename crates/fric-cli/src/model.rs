@@ -55,20 +55,35 @@ impl Model {
         if let Some(path) = named {
             return Self::read(path).map(Some);
         }
+        let attached = Self::attached(log)?;
+        if let Some(model) = &attached {
+            model.note();
+        }
+        Ok(attached)
+    }
+
+    /// Returns the robot file attached to a log, if there is one.
+    pub fn attached(log: &Log) -> Outcome<Option<Self>> {
         match AttachedRobot::find(log) {
-            Ok(attached) => Ok(attached.map(|AttachedRobot { robot, text }| {
-                terminal::note(format_args!("robot: {} from {ATTACHED}", robot.options().name));
-                Self { robot, text, origin: ATTACHED.to_owned() }
-            })),
+            Ok(attached) => Ok(attached.map(|of| Self { robot: of.robot, text: of.text, origin: ATTACHED.to_owned() })),
             Err(AttachedRobotError::Robot(error)) => Err(error.into()),
             Err(error) => Err(Failure::new(error).advise("Name a robot file with --model.")),
         }
     }
 
+    /// Whether it was attached to a log.
+    pub fn is_attached(&self) -> bool {
+        self.origin == ATTACHED
+    }
+
     fn parse(text: String, origin: String) -> Outcome<Self> {
-        let robot = RobotFile::parse(&text, &origin)?;
-        terminal::note(format_args!("robot: {} from {origin}", robot.options().name));
-        Ok(Self { robot, text, origin })
+        let model = Self { robot: RobotFile::parse(&text, &origin)?, text, origin };
+        model.note();
+        Ok(model)
+    }
+
+    fn note(&self) {
+        terminal::note(format_args!("robot: {} from {}", self.robot.options().name, self.origin));
     }
 
     /// Returns a reader of the robot's signals in a part of a log, all but the unread one.

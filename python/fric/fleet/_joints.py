@@ -19,6 +19,8 @@ _KINDS: tuple[Literal["step", "slope", "step_and_slope"], ...] = (*SINGLE, "step
 _SWEEPS = 8
 # Number of columns that are tried at once, so that memory does not grow with the square of the number of logs.
 _BLOCK = 512
+# Fraction of a column's squares that may be left by rounding where it is a combination of others.
+_ROUNDING = 1e-20
 
 
 Whiten = Callable[[Array], Array]
@@ -91,7 +93,7 @@ def squares(line: Line, time: Array, values: Array, whiten: Whiten) -> float:
 def candidates(time: Array, values: Array, variance: Array, series_count: int) -> list[Line]:
     """Returns lines that may be the best: from a segmentation and from single joints, each improved joint by joint."""
     count = len(time)
-    if count < 2 * LEAST_LOGS:
+    if count < 2 * LEAST_LOGS or time[-1] <= time[0]:
         return [Line()]
     starts = [Line(), Line(sloped=True), _segments(time, values, variance)]
     starts += [Line((best,)) for kind in SINGLE if (best := _best_joint(Line(), kind, time, values, variance))]
@@ -106,30 +108,41 @@ def residual_sums(rest: Line, kind: Literal["step", "slope", "step_and_slope"], 
     left = left - q @ (q.T @ left)
     total = float((left**2).sum())
     sums = np.full(len(time), np.inf)
-    room = _room(rest, len(time))
+    room = _room(rest, time)
     for begin in range(0, len(room), _BLOCK):
         places = room[begin : begin + _BLOCK]
         parts = [whiten(columns) for columns in _columns_at(time, places, kind)]
+        least = [_ROUNDING * (part**2).sum(axis=0) for part in parts]
         parts = [part - q @ (q.T @ part) for part in parts]
-        sums[places] = total - _explained(parts, left[:, 0])
+        sums[places] = total - _explained(parts, least, left[:, 0])
     return sums
 
 
-def _explained(parts: list[Array], left: Array) -> Array:
-    """Returns the part of the sum of squares of `left` that one column, or two together, explain, for each place."""
+def _explained(parts: list[Array], least: list[Array], left: Array) -> Array:
+    """Returns the part of the sum of squares of `left` that one column, or two together, explain, for each place. A column whose sum of squares is less than
+    `least` is a combination of others, as a slope between logs of two dates is, and explains nothing."""
+
+    def ratio(column: Array, least: Array) -> Array:
+        size = (column**2).sum(axis=0)
+        found: Array = np.divide(left @ column, size, out=np.zeros_like(size), where=size > least)
+        return found
+
     first = parts[0]
-    size = np.maximum((first**2).sum(axis=0), 1e-300)
-    explained: Array = (left @ first) ** 2 / size
+    explained: Array = ratio(first, least[0]) * (left @ first)
     if len(parts) > 1:
-        second = parts[1] - first * ((first * parts[1]).sum(axis=0) / size)
-        explained = explained + (left @ second) ** 2 / np.maximum((second**2).sum(axis=0), 1e-300)
+        size = (first**2).sum(axis=0)
+        along = np.divide((first * parts[1]).sum(axis=0), size, out=np.zeros_like(size), where=size > least[0])
+        second = parts[1] - first * along
+        explained = explained + ratio(second, least[1]) * (left @ second)
     return explained
 
 
-def _room(rest: Line, count: int) -> np.ndarray[Any, np.dtype[np.int64]]:
-    """Returns the logs at which another joint has enough logs on each side."""
+def _room(rest: Line, time: Array) -> np.ndarray[Any, np.dtype[np.int64]]:
+    """Returns the logs at which another joint has enough logs on each side. Logs of one date have no order among them."""
+    count = len(time)
     allowed = np.zeros(count, dtype=bool)
     allowed[LEAST_LOGS : count - LEAST_LOGS + 1] = True
+    allowed[1:] &= np.diff(time) > 0
     for joint in rest.joints:
         allowed[max(0, joint.log_index - LEAST_LOGS + 1) : joint.log_index + LEAST_LOGS] = False
     return np.flatnonzero(allowed)

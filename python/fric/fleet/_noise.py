@@ -74,10 +74,11 @@ def fit_line(design: Array, values: Array, errors: Array, start: float) -> Scatt
 
 
 def weighted(design: Array, values: Array, variance: Array) -> tuple[Array, Array]:
-    """Returns the coefficients by weighted least squares, and their covariance."""
+    """Returns the coefficients by weighted least squares, and their covariance. Of columns that are combinations of others the shortest coefficients are returned,
+    so that such a line explains no more than one without them, which costs less."""
     root = 1 / np.sqrt(variance)
     q, r = np.linalg.qr(design * root[:, None])
-    inverse = np.linalg.inv(r)
+    inverse = np.linalg.pinv(r)
     return inverse @ (q.T @ (values * root)), inverse @ inverse.T
 
 

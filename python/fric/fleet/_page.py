@@ -10,7 +10,7 @@ from ._alarms import day
 from ._chart import chart, legend
 from ._run import told_once
 from ._trend import Alarm, Series, Trend
-from ._words import TOO_FEW, between, headline, may_show_a_change, provenance, remarks, since, verdict
+from ._words import TOO_FEW, between, has_course, headline, may_show_a_change, provenance, remarks, since, verdict
 
 # Same style as the other pages of fric.
 _STYLE = """
@@ -165,7 +165,7 @@ def _robots(trend: Trend, robots: list[str]) -> str:
 def _state(series: Series) -> str:
     if series.changes:
         return "; ".join(f"{one.kind} {day(one.date)}" for one in series.changes)
-    return "wanders" if series.wanders else "steady" if len(series.values) >= 6 else "too few logs"
+    return "wanders" if series.wanders else "steady" if has_course(series) else "too few dates"
 
 
 def _failures(trend: Trend) -> str:

@@ -16,7 +16,7 @@ from ._run import told_once
 from ._trend import Alarm, Change, NamedEffect, Series, Trend
 
 FORMAT = "fric-trend/1"
-TOO_FEW = f"too few logs with a date, {2 * LEAST_LOGS} of each robot are needed"
+TOO_FEW = f"too few logs of different dates, {2 * LEAST_LOGS} of each robot are needed"
 
 
 def between(change: Change) -> str:
@@ -59,10 +59,15 @@ def _at_times(trend: Trend) -> list[NamedEffect]:
 
 def may_show_a_change(trend: Trend) -> bool:
     """Whether every robot has as many logs as a change needs."""
-    logs: dict[str, int] = {}
+    shows: dict[str, bool] = {}
     for one in trend.series:
-        logs[one.robot] = max(logs.get(one.robot, 0), len(one.values))
-    return bool(logs) and min(logs.values()) >= 2 * LEAST_LOGS
+        shows[one.robot] = shows.get(one.robot, False) or has_course(one)
+    return bool(shows) and all(shows.values())
+
+
+def has_course(series: Series) -> bool:
+    """Whether a series has as many logs as a change needs, and more than one date."""
+    return len(series.values) >= 2 * LEAST_LOGS and bool(series.date[0] < series.date[-1])
 
 
 def verdict(trend: Trend) -> str:
