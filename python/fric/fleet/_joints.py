@@ -95,10 +95,17 @@ def candidates(time: Array, values: Array, variance: Array, series_count: int) -
     count = len(time)
     if count < 2 * LEAST_LOGS or time[-1] <= time[0]:
         return [Line()]
-    starts = [Line(), Line(sloped=True), _segments(time, values, variance)]
+    level_or_slope = [Line(), Line(sloped=True)] if _may_slope(time)[0] else [Line()]
+    starts = [*level_or_slope, _segments(time, values, variance)]
     starts += [Line((best,)) for kind in SINGLE if (best := _best_joint(Line(), kind, time, values, variance))]
     improved = (_improved(start, time, values, variance, series_count) for start in starts)
-    return list(dict.fromkeys([Line(), Line(sloped=True), *improved]))
+    return list(dict.fromkeys([*level_or_slope, *improved]))
+
+
+def _may_slope(time: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Whether at least two dates follow that of each log: otherwise a slope from there is no other line than a step."""
+    following = np.append(time, np.inf)[np.searchsorted(time, time, side="right")]
+    return following < time[-1]
 
 
 def residual_sums(rest: Line, kind: Literal["step", "slope", "step_and_slope"], time: Array, values: Array, whiten: Whiten) -> Array:
@@ -108,7 +115,7 @@ def residual_sums(rest: Line, kind: Literal["step", "slope", "step_and_slope"], 
     left = left - q @ (q.T @ left)
     total = float((left**2).sum())
     sums = np.full(len(time), np.inf)
-    room = _room(rest, time)
+    room = _room(rest, time, kind)
     for begin in range(0, len(room), _BLOCK):
         places = room[begin : begin + _BLOCK]
         parts = [whiten(columns) for columns in _columns_at(time, places, kind)]
@@ -137,12 +144,14 @@ def _explained(parts: list[Array], least: list[Array], left: Array) -> Array:
     return explained
 
 
-def _room(rest: Line, time: Array) -> np.ndarray[Any, np.dtype[np.int64]]:
+def _room(rest: Line, time: Array, kind: Literal["step", "slope", "step_and_slope"]) -> np.ndarray[Any, np.dtype[np.int64]]:
     """Returns the logs at which another joint has enough logs on each side. Logs of one date have no order among them."""
     count = len(time)
     allowed = np.zeros(count, dtype=bool)
     allowed[LEAST_LOGS : count - LEAST_LOGS + 1] = True
     allowed[1:] &= np.diff(time) > 0
+    if kind != "step":
+        allowed &= _may_slope(time)
     for joint in rest.joints:
         allowed[max(0, joint.log_index - LEAST_LOGS + 1) : joint.log_index + LEAST_LOGS] = False
     return np.flatnonzero(allowed)
@@ -176,7 +185,7 @@ def _improved(line: Line, time: Array, values: Array, variance: Array, series_co
 
     best = criterion(line)
     for _ in range(_SWEEPS):
-        rivals = [Line(line.joints, not line.sloped)]
+        rivals = [Line(line.joints, not line.sloped)] if line.sloped or _may_slope(time)[0] else []
         for joint in (*line.joints, None):
             rest = line if joint is None else line.without(joint)
             rivals.append(rest)
@@ -215,7 +224,7 @@ def _segments(time: Array, values: Array, variance: Array) -> Line:
     search = ruptures.BottomUp(custom_cost=cost, min_size=LEAST_LOGS, jump=1).fit(values.reshape(-1, 1))
     # Joints that the segmentation misses would be lost; surplus ones are removed afterwards.
     ends = search.predict(pen=3 * worth)
-    return Line(tuple(Joint(int(end), "step_and_slope") for end in ends[:-1]))
+    return Line(tuple(Joint(end, "step_and_slope") for end in ends[:-1] if time[end] > time[end - 1]))
 
 
 def _moments(time: Array, values: Array) -> list[Array]:
