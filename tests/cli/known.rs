@@ -46,6 +46,35 @@ fn a_known_load_is_the_reference_of_every_command() {
     }
 }
 
+/// Two weights on one bench: the robot file attached to each log states its own.
+#[test]
+fn each_log_has_the_load_that_its_attached_file_states() {
+    let place = Place::empty();
+    for mass_kg in ["5.0", "10.0"] {
+        place.write("truth.toml", bench(&format!("{{ hanging_mass_kg = {mass_kg} }}"), 0.02));
+        let log = format!("{mass_kg}.mcap");
+        place.run(&["simulate", "--model", "truth.toml", "-o", &log, "--duration", "20", "--seed", "3"]).succeeds();
+    }
+    let fit = ["fit", "5.0.mcap", "10.0.mcap", "-o", "fitted.toml", "--json", "fit.json", "--force"];
+    place.run(&fit).succeeds();
+    let cable = &place.json("fit.json")["cables"][0];
+    // Two loads tell μ from the offset, and leave what one does.
+    let value = |key: &str| cable["parameters"][key].as_f64().unwrap();
+    assert!((value("mu") - 0.02).abs() < 2e-4 && value("offset_n").abs() < 0.05, "{cable}");
+    // A file that is named states one load for all logs, which the sensor contradicts.
+    place.run(&[&fit[..], &["--model", "truth.toml"]].concat()).warns(&["the sensor is 0.75 times the reference"]);
+
+    // Another machine is told, and a load that only one file states is an error.
+    place.write("other.toml", bench("{ hanging_mass_kg = 10.0 }", 0.03));
+    let simulate = ["simulate", "-o", "other.mcap", "--duration", "20", "--seed", "3", "--force", "--model"];
+    place.run(&[&simulate[..], &["other.toml"]].concat()).succeeds();
+    let both = ["fit", "5.0.mcap", "other.mcap", "-o", "fitted.toml", "--force"];
+    place.run(&both).warns(&["`other.mcap`: the robot file attached to it has other values"]);
+    place.write("measured.toml", bench("'/reference_forces'", 0.02));
+    place.run(&[&simulate[..], &["measured.toml"]].concat()).succeeds();
+    place.run(&both).fails(1, &["`other.mcap`", "states no load"]).advises(&["--model"]);
+}
+
 /// A fit that takes a wrong weight for a zero of the sensor says so.
 #[test]
 fn a_zero_that_is_most_of_the_error_is_told() {

@@ -65,13 +65,15 @@ pub fn read<'a>(
 /// the first one is used.
 fn compare(told: &str, own: &Model, first: &Model) -> Outcome<Vec<String>> {
     let [of_own, of_first] = [own, first].map(|model| model.robot.options());
-    let is_known = |model: &Model| model.robot.params().known_reference().is_some();
+    let [own_is_known, first_is_known] = [own, first].map(|model| model.robot.params().known_reference().is_some());
     let differs = if own.robot.cable_names() != first.robot.cable_names() {
         Some("has other cables than")
-    } else if is_known(own) != is_known(first) {
-        Some("states the load on the cables, or not, other than")
     } else {
-        None
+        match (own_is_known, first_is_known) {
+            (true, false) => Some("states a load under `[log] reference`, unlike"),
+            (false, true) => Some("states no load under `[log] reference`, unlike"),
+            _ => None,
+        }
     };
     if let Some(differs) = differs {
         return Err(Failure::new(format!("{told}: the robot file attached to it {differs} that of the first log"))

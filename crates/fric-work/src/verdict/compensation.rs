@@ -43,28 +43,30 @@ struct Compared {
     before: f64,
     after: f64,
     unit: &'static str,
+    /// The remaining fraction of the mean error, which few samples far from the others hardly change; NaN for what is no cable's force.
+    mean_left: f64,
 }
 
 impl Compared {
     fn of_cable(cable: &CableResult) -> Option<Self> {
-        let (before, after) = cable.before.as_ref().zip(cable.after.as_ref())?;
-        Some(Self { name: cable.name.clone(), before: before.rms_n, after: after.rms_n, unit: "N" })
+        Some(Self::of_forces(&cable.name, cable.before.as_ref()?, cable.after.as_ref()?))
+    }
+
+    fn of_forces(name: &str, before: &ForceError, after: &ForceError) -> Self {
+        let mean_left = after.mae_n / before.mae_n;
+        Self { mean_left, ..Self::new(name.to_owned(), [before.rms_n, after.rms_n], "N") }
+    }
+
+    fn new(name: String, [before, after]: [f64; 2], unit: &'static str) -> Self {
+        Self { name, before, after, unit, mean_left: f64::NAN }
     }
 
     fn of_wrench(before: &WrenchError, after: &WrenchError) -> [Self; 2] {
+        let force_n = [before.force_rms_n, after.force_rms_n];
+        let torque_nm = [before.torque_rms_nm, after.torque_rms_nm];
         [
-            Self {
-                name: "the force on the platform".to_owned(),
-                before: before.force_rms_n,
-                after: after.force_rms_n,
-                unit: "N",
-            },
-            Self {
-                name: "the torque on the platform".to_owned(),
-                before: before.torque_rms_nm,
-                after: after.torque_rms_nm,
-                unit: "Nm",
-            },
+            Self::new("the force on the platform".to_owned(), force_n, "N"),
+            Self::new("the torque on the platform".to_owned(), torque_nm, "Nm"),
         ]
     }
 
@@ -93,6 +95,16 @@ fn share_left(of: &str, all: &[Compared]) -> Option<String> {
     let better = all.iter().filter(|one| !one.is_worse());
     let shares: Vec<f64> = better.map(Compared::left).filter(|left| left.is_finite()).collect();
     (!shares.is_empty()).then(|| format!("{} of {of}", range_in_words(shares.into_iter())))
+}
+
+/// Returns what is left where compensation works but for few samples that make the rms: spikes, or a short stretch of a faulty sensor.
+fn left_by_few(cables: &[Compared]) -> Option<String> {
+    let by_few = cables.iter().any(|one| one.left() > WORKS) && cables.iter().all(|one| one.mean_left <= WORKS);
+    by_few.then(|| {
+        let means = range_in_words(cables.iter().map(|one| one.mean_left));
+        let all = range_in_words(cables.iter().map(Compared::left));
+        format!("{means} of the mean error, and {all} of the rms error, which few samples make")
+    })
 }
 
 fn wrench_left(wrench: &[Compared]) -> Option<String> {
@@ -130,6 +142,7 @@ impl ReplayResult {
         } else {
             None
         };
+        let by_few = left_by_few(&cables);
         let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
         let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
         let left = match (of_cables, beside) {
@@ -154,6 +167,10 @@ impl ReplayResult {
             (Some(worse), left) => {
                 let elsewhere = left.map_or_else(String::new, |left| format!(" Elsewhere it leaves {left}."));
                 (Tone::Bad, format!("{worse}{elsewhere}{}", flagged.unwrap_or_default()))
+            }
+            (None, Some(_)) if by_few.is_some() => {
+                let left = by_few.unwrap_or_default();
+                (Tone::Mixed, format!("Compensation works but for single samples: it leaves {left}."))
             }
             (None, Some(left)) if greatest <= WORKS => (Tone::Well, format!("Compensation works: it leaves {left}.")),
             (None, Some(left)) if least <= HARDLY_HELPS => {
@@ -221,20 +238,21 @@ fn is_many(flagged: u64, samples: u64) -> bool {
 #[must_use]
 pub fn of_fit(result: &FitResult) -> Verdict {
     let of_cable = |cable: &FitCableResult| {
-        let (before, after) = cable.before.zip(cable.after)?;
-        Some(Compared { name: cable.name.clone(), before: before.rms_n, after: after.rms_n, unit: "N" })
+        Some(Compared::of_forces(&cable.name, cable.before.as_ref()?, cable.after.as_ref()?))
     };
     let cables: Vec<Compared> = result.cables.iter().filter_map(of_cable).collect();
     let wrench: Vec<Compared> =
         result.wrench.iter().flat_map(|wrench| Compared::of_wrench(&wrench.before, &wrench.after)).collect();
-    let left = share_left("the force error", &cables).or_else(|| wrench_left(&wrench));
+    let by_few = left_by_few(&cables);
+    let is_by_few = by_few.is_some();
+    let left = by_few.or_else(|| share_left("the force error", &cables)).or_else(|| wrench_left(&wrench));
     let all: Vec<Compared> = cables.into_iter().chain(wrench).collect();
     let greatest = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(0.0, f64::max);
     let (fitted, it) = fitted(result);
     let worse = worse(&all);
     let it = if worse.is_some() { format!("elsewhere {it}") } else { it.to_owned() };
     let least = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(1.0, f64::min);
-    let nothing = if !all.is_empty() && least > HARDLY_HELPS { " It explains next to nothing." } else { "" };
+    let nothing = if !all.is_empty() && least > HARDLY_HELPS && !is_by_few { " It explains next to nothing." } else { "" };
     let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}.{nothing}"));
     let left = of_zeros(result).map_or(left.clone(), |zeros| format!("{left} {zeros}"));
     let (tone, sentence) = match worse {
@@ -332,7 +350,7 @@ pub fn of_hysteresis(result: &HysteresisResult) -> Verdict {
     let of_axis = |axis: &fric_lab::hysteresis::AxisResult| {
         let (before, after) = axis.without.as_ref().zip(axis.with.as_ref())?;
         let name = format!("the hysteresis on axis {}", axis.axis);
-        axis.lasting_ratio.map(|_| Compared { name, before: before.width, after: after.width, unit: axis.unit })
+        axis.lasting_ratio.map(|_| Compared::new(name, [before.width, after.width], axis.unit))
     };
     let all: Vec<Compared> = result.axes.iter().filter_map(of_axis).collect();
     let axes: Vec<&str> =
@@ -404,6 +422,21 @@ mod tests {
         };
         let reference = FitReference::Forces;
         FitResult { format: FitResult::FORMAT, robot: "rig".to_owned(), reference, cables: vec![cable], wrench: None }
+    }
+
+    /// Nine spikes of 1000 N in 9000 samples make an rms of `1000·√(9/9000)` = 31.6 N and a mean of 1 N, whatever friction there is.
+    #[test]
+    fn few_samples_do_not_hide_that_compensation_works() {
+        let mut spikes = fit(0.0, 0.1, Vec::new(), true);
+        let errors = |rms_n: f64, mae_n: f64| Some(ForceError { rms_n: rms_n.hypot(31.6), mae_n: mae_n + 1.0 });
+        (spikes.cables[0].before, spikes.cables[0].after) = (errors(5.0, 4.5), errors(0.1, 0.08));
+        let Verdict { tone, sentence, .. } = of_fit(&spikes);
+        assert_eq!(tone, Tone::Mixed);
+        assert!(sentence.contains("19.6 % of the mean error, and 98.8 % of the rms error, which few"), "{sentence}");
+        assert!(!sentence.contains("next to nothing"), "{sentence}");
+        // Where the mean is not explained either, nothing is.
+        (spikes.cables[0].before, spikes.cables[0].after) = (errors(5.0, 4.5), errors(4.9, 4.4));
+        assert!(of_fit(&spikes).sentence.contains("next to nothing"));
     }
 
     /// `± 1.96 s` holds the zero with 95 %, so that of 9 N with `s` = 5 N may be none; and 7 N are less than half of the squares of 10 N.
