@@ -88,8 +88,8 @@ impl<'a> Runs<'a> {
     /// Reads the next log, which warnings call `told`. After the last, the warnings about all samples follow.
     ///
     /// # Errors
-    /// Returns a [`SignalError`](fric_log::signals::SignalError) of the log, a [`StoreError`](fric_lab::fit::StoreError) if the samples find no room,
-    /// and the errors of the supervisor.
+    /// Returns a [`SignalError`](fric_log::signals::SignalError) of the log, a [`StoreError`](fric_lab::fit::StoreError) if the samples find no room, a
+    /// [`FitError`](fric_lab::fit::FitError) if the reference of a cable is its own sensor's force, and the errors of the supervisor.
     pub fn add<W: Supervisor>(
         &mut self,
         told: &str,
@@ -128,6 +128,7 @@ impl<'a> Runs<'a> {
         }
         self.read_count += 1;
         if self.read_count == names.len() {
+            readiness::references(samples, &robot.cable_names())?;
             watch.warn(&samples.warnings(&robot.cable_names())?)?;
         }
         Ok(())

@@ -6,6 +6,7 @@ use fric_core::robot::file::{LogTable, ReferenceTable, RobotFile};
 use super::balance::{ONE_LINE, ONE_LINE_ADVICE};
 use super::error::FitError;
 use crate::samples::record::Reference;
+use crate::samples::store::SampleStore;
 
 /// What a force sensor of the other sign shows, and what to do.
 pub(crate) const NEGATIVE_FORCE: &str = "most samples have a force below 0 by the sensor";
@@ -36,16 +37,23 @@ struct CableHoldings {
     signalled: u64,
     tension: Tension,
     referenced: u64,
-    /// The first length, m.
-    length_m: Option<f64>,
-    /// Whether the length ever was another one.
-    moved: bool,
+    length_m: Course,
+    reference_n: Course,
 }
 
-impl CableHoldings {
-    fn add_length(&mut self, length_m: f64) {
-        if length_m.is_finite() {
-            self.moved |= (*self.length_m.get_or_insert(length_m) - length_m).abs() > 0.0;
+/// Whether a signal changes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
+    /// Its first value.
+    first: Option<f64>,
+    /// Whether it ever was another one.
+    changed: bool,
+}
+
+impl Course {
+    fn add(&mut self, value: f64) {
+        if value.is_finite() {
+            self.changed |= (*self.first.get_or_insert(value) - value).abs() > 0.0;
         }
     }
 }
@@ -122,7 +130,8 @@ impl Holdings {
         {
             holdings.signalled += u64::from(input.sensor_force_n.is_finite() && input.length_m.is_finite());
             holdings.tension.add(input.sensor_force_n);
-            holdings.add_length(input.length_m);
+            holdings.length_m.add(input.length_m);
+            holdings.reference_n.add(*reference_n);
             holdings.referenced += u64::from(reference_n.is_finite());
         }
     }
@@ -138,8 +147,9 @@ impl Holdings {
             cable.signalled += other.signalled;
             cable.tension.join(&other.tension);
             cable.referenced += other.referenced;
-            cable.length_m = cable.length_m.or(other.length_m);
-            cable.moved |= other.moved;
+            // What differs between logs only is no change.
+            cable.length_m.changed |= other.length_m.changed;
+            cable.reference_n.changed |= other.reference_n.changed;
         }
     }
 
@@ -247,6 +257,7 @@ impl Lack {
 const SILENT_ADVICE: &str =
     "Compare the names of the cables in the log with those in the robot file; if they agree, all values are gaps.";
 const STILL_ADVICE: &str = "Record strokes in both directions, best the run of `fric-cli excite`; if the cable did move, look for its length in the log.";
+const CONSTANT_ADVICE: &str = "State a load that stays as `reference = { hanging_mass_kg = … }` or `{ constant_n = … }` under `[log]`; of several logs under several loads, each in the robot file that is attached to it (`fric-cli convert`).";
 const SENSOR_ADVICE: &str =
     "Name their topic as `reference` under `[log]` in the robot file, or record with force sensors at the platform.";
 const COLUMN_ADVICE: &str = "Name their columns under `[log.columns]` in the robot file, such as \"cable1.reference_n\" = { column = \"Load cell [N]\" }, or a force that is known as `reference` under `[log]`.";
@@ -263,6 +274,15 @@ fn without_pose(log: &LogTable, has_columns: bool) -> (String, &'static str) {
     } else {
         (format!("the log has no pose on {}", log.pose), POSE_ADVICE)
     }
+}
+
+/// Checks that the references are measured apart from the sensors. `names` are those of the cables.
+///
+/// # Errors
+/// [`FitError`] if the reference of a cable is the force of its own sensor.
+pub fn references(samples: &SampleStore<'_>, names: &[&str]) -> Result<(), FitError> {
+    let advice = "Name the column or topic of the force at the platform as the reference, under `[log]` in the robot file.";
+    samples.copied_references(names).map_or(Ok(()), |cause| Err(FitError::new(cause, advice)))
 }
 
 /// Returns what is missing to identify each cable from its force at the platform.
@@ -291,11 +311,18 @@ pub(crate) fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static
         };
         readiness.lacks.push(Lack { cause: cause + &of_cables(&names, &cables), advice, instead, cables });
     }
-    let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|of| !of.moved));
-    if !cables.is_empty() {
-        let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
-        let cause = format!("the length of {} never changes", listed.join(", "));
-        readiness.lacks.push(Lack { cause, advice: STILL_ADVICE, instead: None, cables });
+    let courses: [(&str, &'static str, fn(&CableHoldings) -> Course); 2] = [
+        ("length", STILL_ADVICE, |of| of.length_m),
+        ("reference", CONSTANT_ADVICE, |of| of.reference_n),
+    ];
+    let is_known = params.known_reference().is_some();
+    for (signal, advice, of) in courses.into_iter().filter(|(signal, ..)| *signal == "length" || !is_known) {
+        let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|all| !of(all).changed));
+        if !cables.is_empty() {
+            let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
+            let cause = format!("the {signal} of {} never changes", listed.join(", "));
+            readiness.lacks.push(Lack { cause, advice, instead: None, cables });
+        }
     }
     let follows_pose = |cable: usize| params.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
     let cables = if holdings.posed == 0 { without(&readiness, &follows_pose) } else { Vec::new() };

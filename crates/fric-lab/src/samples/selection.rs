@@ -7,6 +7,7 @@ use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::cable::CableRecord;
 use super::held::repeated_forces;
+use super::noise::white_noise;
 use super::record::Row;
 use super::steps::CoarseSteps;
 use super::still::{runs, stands_still};
@@ -43,6 +44,9 @@ pub enum Standing {
 const FORGOTTEN: f64 = 1e-3;
 /// Minimum travel of a log, as a multiple of the distance of the warm-up, for the log to be used.
 const LEAST_WAY_RATIO: f64 = 1.25;
+/// A reference with less than this fraction of the sensor's noise is calculated. That of two force sensors differs by less, and that of a calculation is rounding;
+/// half and twice this fraction tell the same.
+const CALCULATED_RATIO: f64 = 0.1;
 /// A cable with a smaller range of motion is at rest, even if its winch moves to hold the force, m.
 const LEAST_RANGE_M: f64 = 3e-5;
 
@@ -73,15 +77,26 @@ pub fn leave_out_still_forces(record: &CableRecord<'_>, standings: &mut [Standin
     }
 }
 
-/// Leaves out references that stand still, unless they come in coarse steps.
+/// Leaves out references that stand still, unless they come in coarse steps or are calculated.
 pub fn leave_out_still_references(record: &CableRecord<'_>, standings: &mut [Standing]) {
-    if CoarseSteps::of(record.references_n).is_some() {
+    if CoarseSteps::of(record.references_n).is_some() || is_calculated(record) {
         return;
     }
     for run in runs(record.references_n).filter(|run| stands_still(record.references_n, run)) {
         let places = standings.iter_mut().skip(run.start).take(run.len());
         places.filter(|standing| **standing == Standing::Used).for_each(|s| *s = Standing::WithoutReference);
     }
+}
+
+/// Whether the reference is calculated and no device shows it, as `m·(g − a)` of a weight that stays the same at constant speed: where it changes, it has next to
+/// nothing of the noise that the sensor has.
+fn is_calculated(record: &CableRecord<'_>) -> bool {
+    let mut changing_n = record.references_n.to_vec();
+    for run in runs(record.references_n).filter(|run| run.len() > 1) {
+        changing_n.iter_mut().skip(run.start).take(run.len()).for_each(|reference_n| *reference_n = f64::NAN);
+    }
+    let noises_n = white_noise(&changing_n).zip(white_noise(&record.shown_forces_n()));
+    noises_n.is_some_and(|(of_reference, of_sensor)| of_reference < CALCULATED_RATIO * of_sensor)
 }
 
 /// Leaves out references that were interpolated between two measurements.

@@ -39,6 +39,10 @@ impl CoarseSteps {
         let mut values = finite.clone();
         values.sort_by(f64::total_cmp);
         values.dedup();
+        // Any two values are one step apart, such as those of two weights.
+        if values.len() < 3 {
+            return None;
+        }
         let gaps = || values.windows(2).map(|pair| pair[1] - pair[0]);
         let step = gaps().fold(f64::INFINITY, f64::min);
         let middle = changes.len() / 2;
@@ -77,5 +81,7 @@ mod tests {
         let mut frozen_n = shown_n(1e-5, |_| 1);
         frozen_n[1000..3000].fill(10.0);
         assert_eq!(step(&frozen_n), None);
+        // Two weights, one after the other.
+        assert_eq!(step(&[[49.05; 100], [98.1; 100]].concat()), None);
     }
 }

@@ -181,6 +181,11 @@ impl<'a> SampleStore<'a> {
         Ok(Cow::Owned(self.tail.holding(cables, samples.map_err(StoreError::new)?)))
     }
 
+    /// Returns what is wrong if the reference of cables is their own sensor's force. `names` are those of the cables.
+    pub(crate) fn copied_references(&self, names: &[&str]) -> Option<String> {
+        self.signals.copied(names)
+    }
+
     /// Returns warnings about signals that are slower than the log or contradict one another. `names` are those of the cables.
     ///
     /// # Errors

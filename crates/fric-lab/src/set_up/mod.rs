@@ -74,6 +74,11 @@ impl Signals {
         self.motions.still()
     }
 
+    /// Returns what is wrong if cables have their own sensor's force as the reference. `names` are those of the cables.
+    pub fn copied(&self, names: &[&str]) -> Option<String> {
+        self.order.copied(names)
+    }
+
     /// Returns warnings about signals that contradict one another. `names` are those of the cables.
     pub fn warnings(&self, names: &[&str]) -> Vec<String> {
         self.motions.warnings(names).into_iter().chain(self.order.warnings(names)).collect()

@@ -122,7 +122,23 @@ impl Order {
         }
     }
 
-    /// Returns warnings about sensors that go with one another's references, and about those that are one.
+    /// Returns what is wrong if the reference of cables is their own sensor's force in every sample, whatever its unit and zero.
+    pub fn copied(&self, names: &[&str]) -> Option<String> {
+        let is_copy = |cable: &usize| {
+            let own = self.pairs.get(cable * (self.cable_count + 1)).and_then(Pair::rest);
+            own.is_some_and(|[variance_n2, rest_n2]| rest_n2 <= ROUNDING * variance_n2)
+        };
+        let copies = (0..self.cable_count).filter(is_copy);
+        let copies: Vec<&str> = copies.filter_map(|cable| names.get(cable)).copied().collect();
+        let (references, show) = match copies[..] {
+            [] => return None,
+            [_] => ("the reference", "shows the force of its own sensor"),
+            _ => ("the references", "show the forces of their own sensors"),
+        };
+        Some(format!("{references} of {} {show} in every sample, so nothing is known of friction", listed(&copies)))
+    }
+
+    /// Returns warnings about sensors that go with one another's references, about those that are one, and about those that are their own reference.
     pub fn warnings(&self, names: &[&str]) -> Vec<String> {
         let of =
             |cables: &[usize]| -> Vec<&str> { cables.iter().filter_map(|cable| names.get(*cable)).copied().collect() };
@@ -144,7 +160,7 @@ impl Order {
                 format!("the sensors of {names} show the same force in every sample; if each has its own, compare their names in the log and in the robot file")
             })
         });
-        exchanged.into_iter().chain(shared).collect()
+        exchanged.into_iter().chain(shared).chain(self.copied(names)).collect()
     }
 }
 
@@ -196,6 +212,29 @@ mod tests {
         assert_eq!(told([2, 1, 0, 3], 5.0, |_| f64::NAN), nothing);
         assert_eq!(told([2, 1, 0, 3], 5.0, |_| 7.0), nothing);
         assert_eq!(told([2, 1, 0, 3], 0.5, as_it_is), nothing);
+    }
+
+    /// Of friction of 8 % the copy has none, whatever its unit and zero.
+    #[test]
+    fn a_reference_that_is_the_sensor_itself_is_told() {
+        let told = |copied: bool| {
+            let mut sums = Order::new(1);
+            for sample in 0..1000_i32 {
+                let angle = 0.01 * f64::from(sample);
+                let load_n = 20.0 + angle.sin();
+                let sensor_force_n = load_n * (1.0 + 0.08 * angle.cos().signum());
+                sums.add(&Sample {
+                    stamp_nanos: i64::from(sample),
+                    cables: &[CableInput { sensor_force_n, ..CableInput::default() }],
+                    reference_force_n: &[if copied { 9.81 * sensor_force_n - 3.0 } else { load_n }],
+                    pose: None,
+                    outside_wrench: None,
+                });
+            }
+            sums.warnings(&["a"])
+        };
+        assert_eq!(told(false), Vec::<String>::new());
+        assert!(told(true)[0].starts_with("the reference of a shows the force of its own sensor in every sample"));
     }
 
     #[test]
