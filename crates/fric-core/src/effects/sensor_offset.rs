@@ -4,7 +4,7 @@
 //! platform, it acts before the pulleys: a sensor pulley of 180° halves it, and it is part of the load on the bearings. In newtons of the sensor
 //! signal, like `sensor_drift`. Neutral: 0.
 //!
-//! Cause: the sensor was not tared, or its zero has moved since.
+//! Cause: the sensor was not tared, or its zero has moved since. A stated load that is wrong looks the same.
 
 use super::{Acting, Effect, EffectRow, Memory, OnMu};
 use crate::parameters::ParameterRow;
@@ -15,8 +15,8 @@ const EXCITATION: &str = "long movements at cable forces that differ by a factor
 /// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_offset",
-    cause: "the force sensor was not tared",
-    remedy: "tare the force sensor at the winch without load",
+    cause: "the force sensor was not tared, or a load that the robot file states is another one",
+    remedy: "tare the force sensor at the winch without load; weigh a load that is stated",
     parameters: &[ParameterRow::fitted("offset_n", "N", [-1e6, 0.0, 1e6], EXCITATION)],
     example: &[0.3],
     memory: Memory::Nothing,

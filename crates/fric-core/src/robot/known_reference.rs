@@ -22,6 +22,9 @@ pub enum KnownReference {
 const QUIET_M_PER_S2: f64 = 0.5;
 
 impl KnownReference {
+    /// Half the width of the triangular window over which the acceleration of a hanging mass is the mean, s.
+    pub const WINDOW_S: f64 = 0.02;
+
     /// Returns the greatest acceleration of the cable up to which the force counts as known, m/s²: infinite for a constant force.
     #[must_use]
     pub fn quiet_m_per_s2(&self) -> f64 {

@@ -266,7 +266,9 @@ fn warm_up_was_misjudged(
 pub fn prepared(record: &CableRecord<'_>) -> Vec<Standing> {
     let mut standings = selection::first_look(record, |cycle| record.reference_n(cycle).is_finite());
     selection::leave_out_still_forces(record, &mut standings);
-    if !record.reference_is_known {
+    if record.reference_is_known {
+        selection::leave_out_jumps(record, &mut standings);
+    } else {
         selection::leave_out_still_references(record, &mut standings);
     }
     selection::leave_out_interpolated(&measured(record), &mut standings);
@@ -379,7 +381,7 @@ fn force_errors(
 ) -> ForceErrors {
     let gain = record.params.frictionless_gain();
     let before_n = frictionless_errors(record);
-    let mut errors = ForceErrors { before_n, set_up: SetUp::new(gain), ..ForceErrors::default() };
+    let mut errors = ForceErrors { before_n, set_up: SetUp::new(gain, record.reference_is_known), ..ForceErrors::default() };
     for (cycle, reference_n) in record.references_n.iter().enumerate().filter(|(_, known)| known.is_finite()) {
         errors.reference_n.add(*reference_n);
         let shift_n = zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied();

@@ -47,8 +47,8 @@ pub struct CableErrors {
 }
 
 impl CableErrors {
-    fn new(cable: &CableParams, jumps: Jumps) -> Self {
-        Self { set_up: SetUp::new(cable.frictionless_gain()), jumps, ..Self::default() }
+    fn new(cable: &CableParams, jumps: Jumps, is_stated: bool) -> Self {
+        Self { set_up: SetUp::new(cable.frictionless_gain(), is_stated), jumps, ..Self::default() }
     }
 
     /// Whether the sensor has shown any force.
@@ -190,9 +190,11 @@ impl Replay {
     /// Returns the errors of [`AnyCompensator::new`].
     pub fn new(robot: &RobotParams<'_>) -> Result<Self, ParamError> {
         let jumps = robot.sensor_jumps_n().map(|limit_n| Jumps::new(limit_n, robot.monitor().length_jump_m));
+        let is_stated = robot.known_reference().is_some();
+        let errors = |(cable, jumps)| CableErrors::new(cable, jumps, is_stated);
         Ok(Self {
             compensator: AnyCompensator::new(robot)?,
-            cables: robot.cables().iter().zip(jumps).map(|(cable, jumps)| CableErrors::new(cable, jumps)).collect(),
+            cables: robot.cables().iter().zip(jumps).map(errors).collect(),
             wrench_before: WrenchErrors::default(),
             wrench_after: WrenchErrors::default(),
             by_mass: ByMass::new(robot),

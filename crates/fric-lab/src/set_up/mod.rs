@@ -24,9 +24,9 @@ pub(crate) struct SetUp {
 }
 
 impl SetUp {
-    /// Creates empty sums for a cable whose sensor has this frictionless gain.
-    pub fn new(frictionless_gain: f64) -> Self {
-        Self { scale: Scale::new(frictionless_gain), direction: Direction::default() }
+    /// Creates empty sums for a cable whose sensor has this frictionless gain, and whose reference is measured or a load that the robot file states.
+    pub fn new(frictionless_gain: f64, is_stated: bool) -> Self {
+        Self { scale: Scale::new(frictionless_gain, is_stated), direction: Direction::default() }
     }
 
     /// Begins a log, or what follows a jump of the length.

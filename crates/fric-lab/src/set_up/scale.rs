@@ -20,6 +20,8 @@ const MOST_APART: f64 = 1.5;
 pub(crate) struct Scale {
     /// Force at the platform per force of the sensor without friction: below 1 if the sensor holds a pulley.
     frictionless_gain: f64,
+    /// Whether the reference is a load that the robot file states.
+    is_stated: bool,
     /// The force without any correction, and with the model's.
     forces: [Beside; 2],
 }
@@ -34,9 +36,9 @@ enum Off {
 }
 
 impl Scale {
-    /// Creates empty sums for a cable whose sensor has this frictionless gain.
-    pub fn new(frictionless_gain: f64) -> Self {
-        Self { frictionless_gain, ..Self::default() }
+    /// Creates empty sums for a cable whose sensor has this frictionless gain, and whose reference is measured or a load that the robot file states.
+    pub fn new(frictionless_gain: f64, is_stated: bool) -> Self {
+        Self { frictionless_gain, is_stated, ..Self::default() }
     }
 
     /// Adds a sample: the sign of the motion, its reference, and the force at the platform by the sensor without any correction and with the model's.
@@ -119,13 +121,15 @@ impl Scale {
 /// Returns warnings about cables whose sensor is on another scale than the reference. Cables with the same cause share a line.
 #[must_use]
 pub(crate) fn warnings<'a>(cables: impl Iterator<Item = (&'a str, Scale)>) -> Vec<String> {
-    type Group<'a> = ((bool, Option<&'static str>, bool), Vec<&'a str>, [f64; 2]);
+    type Group<'a> = ((bool, Option<&'static str>, bool, bool), Vec<&'a str>, [f64; 2]);
     let mut groups: Vec<Group<'a>> = Vec::new();
     for (name, scale) in cables {
         let Some(off) = scale.off() else { continue };
         let (kind, ratio) = match off {
-            Off::Level(ratio) => ((true, of_level(scale.frictionless_gain, ratio), scale.varies()), ratio),
-            Off::Changes(ratio) => ((false, of_changes(ratio), true), ratio),
+            Off::Level(ratio) => {
+                ((true, of_level(scale.frictionless_gain, ratio), scale.varies(), scale.is_stated), ratio)
+            }
+            Off::Changes(ratio) => ((false, of_changes(ratio), true, scale.is_stated), ratio),
         };
         match groups.iter_mut().find(|(other, ..)| *other == kind) {
             Some((_, names, [least, greatest])) => {
@@ -135,13 +139,20 @@ pub(crate) fn warnings<'a>(cables: impl Iterator<Item = (&'a str, Scale)>) -> Ve
             None => groups.push((kind, vec![name], [ratio; 2])),
         }
     }
-    let warning = |((is_level, cause, varies), names, range): Group<'a>| {
+    let warning = |((is_level, cause, varies, is_stated), names, range): Group<'a>| {
         let [least, greatest] = range.map(significant);
         let ratio = if least == greatest { least } else { format!("{least} to {greatest}") };
-        let likely = cause.map_or_else(
-            || "look at zero, unit and calibration of both, and at the sensor's pulley".to_owned(),
-            |cause| format!("the likely cause is {cause}"),
-        );
+        let likely = match (cause, is_stated) {
+            (None, false) => "look at zero, unit and calibration of both, and at the sensor's pulley".to_owned(),
+            (None, true) => {
+                "look at the load that the robot file states, and at zero, unit, calibration and pulley of the sensor"
+                    .to_owned()
+            }
+            (Some(cause), false) => format!("the likely cause is {cause}"),
+            (Some(cause), true) => {
+                format!("either the robot file states a load that is wrong by this factor, or it is {cause}")
+            }
+        };
         let (is, or) = match (is_level, varies) {
             (true, true) => ("is", ""),
             (true, false) => ("is", "; it may be its zero as well, from which a load that stays does not tell it"),
@@ -185,7 +196,7 @@ mod tests {
         (swing_n, phase): (f64, f64),
         mu: f64,
     ) -> Scale {
-        let mut scale = Scale::new(1.0);
+        let mut scale = Scale::new(1.0, false);
         for sample in 0..5000 {
             let angle = 0.01 * f64::from(sample);
             let load_n = 10.0 + swing_n * (angle + phase).sin();
@@ -254,7 +265,7 @@ mod tests {
     #[test]
     fn noise_of_a_reference_is_no_scale() {
         // The reference trembles by as much as it varies; the force does not.
-        let mut scale = Scale::new(1.0);
+        let mut scale = Scale::new(1.0, false);
         for sample in 0..5000_i32 {
             let load_n = 10.0 + (0.01 * f64::from(sample)).sin();
             let tremble_n = if sample % 2 == 0 { 1.0 } else { -1.0 };

@@ -1,7 +1,7 @@
 //! Effects that the file has not got, parameters at the end of their range, and a reference that is known.
 
 use fric_core::robot::file::RobotFile;
-use fric_lab::fit::{FitOptions, rewritten};
+use fric_lab::fit::{CableFit, FitOptions, rewritten};
 use fric_lab::simulate::{HiddenEffect, SimulationOptions};
 
 use super::logs::{FRICTION, Log, assert_near, parameter, value};
@@ -73,24 +73,47 @@ fn a_parameter_at_its_bound_is_the_bound_and_said_to_be() {
     assert!(free.at_bound.is_empty());
 }
 
-/// Under a constant load that is known the reference never changes, and is no stuck sensor.
-#[test]
-fn a_constant_reference_is_learned_from() {
-    let known = |friction: &str| {
-        let text = bench(PULLEYS, friction).to_toml().unwrap();
-        let text = text.replace("reference = \"/reference_forces\"", "reference = { constant_n = 8.0 }");
-        let robot = RobotFile::parse(&text, "known").unwrap();
-        assert!(robot.params().known_reference().is_some());
-        robot
-    };
+/// A bench under a load of 8 N that is known.
+fn known(friction: &str) -> RobotFile {
+    let text = bench(PULLEYS, friction).to_toml().unwrap();
+    let text = text.replace("reference = \"/reference_forces\"", "reference = { constant_n = 8.0 }");
+    let robot = RobotFile::parse(&text, "known").unwrap();
+    assert!(robot.params().known_reference().is_some());
+    robot
+}
+
+/// Fits the friction to 40 s of it, with references that are off by `error_n` at each time.
+fn fit_known(error_n: impl Fn(f64) -> f64) -> CableFit {
     let options = SimulationOptions { duration_s: Some(40.0), ..SimulationOptions::default() };
     let mut log = Log::record(&known(TRUE_FRICTION), &options);
-    for cycle in &mut log.0 {
-        cycle.reference_force_n = vec![8.0];
+    for (cycle, number) in log.0.iter_mut().zip(0_i32..) {
+        cycle.reference_force_n = vec![8.0 + error_n(1e-3 * f64::from(number))];
     }
     let three: Vec<_> = FRICTION[..3].iter().map(|name| parameter(name)).collect();
     let free = FitOptions { parameters: Some(three), ..FitOptions::default() };
-    let fit = log.fit(&known(&format!("{GIVEN}, offset_n = 0.1")), &free).remove(0);
+    log.fit(&known(&format!("{GIVEN}, offset_n = 0.1")), &free).remove(0)
+}
+
+/// Under a constant load that is known the reference never changes, and is no stuck sensor.
+#[test]
+fn a_constant_reference_is_learned_from() {
+    let fit = fit_known(|_| 0.0);
     assert!(fit.samples.used > 30_000, "{:?}", fit.samples);
     assert_near(&fit, &FRICTION[..3], &[0.02, 1000.0, 0.2, 0.1]);
+}
+
+/// The mean of a step `s` of the acceleration over a triangular window of ±20 ms is off by `s·(1 − |t|/20 ms)²/2` at `t` from the step. A load of 0.5 kg that
+/// starts and ends to accelerate by 4 m/s² once a second is off by up to 1 N.
+#[test]
+fn a_load_is_not_known_where_its_acceleration_jumps() {
+    let jumping = |time_s: f64| {
+        let at = (time_s - time_s.round()) / 0.02;
+        if at.abs() < 1.0 { at.signum() * (1.0 - at.abs()).powi(2) } else { 0.0 }
+    };
+    let fit = fit_known(jumping);
+    assert!((39 * 40..39 * 120).contains(&fit.samples.without_reference), "{:?}", fit.samples);
+    assert_near(&fit, &FRICTION[..3], &[0.02, 1000.0, 0.2, 0.1]);
+    // A smooth acceleration is known everywhere.
+    let smooth = fit_known(|time_s| 0.2 * (3.0 * time_s).sin());
+    assert_eq!(smooth.samples.without_reference, 0, "{:?}", smooth.samples);
 }

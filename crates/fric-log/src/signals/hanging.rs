@@ -14,7 +14,8 @@ use super::SignalPaths;
 use super::waiting::Row;
 
 /// Half the width of the window, and the minimum distance of rows for a difference.
-const WINDOW_NANOS: i64 = 20_000_000;
+#[expect(clippy::cast_possible_truncation, reason = "a whole number of ns")]
+const WINDOW_NANOS: i64 = (KnownReference::WINDOW_S * 1e9) as i64;
 /// Rows further apart than this say nothing about the acceleration between them.
 const FARTHEST_NANOS: i64 = 10 * WINDOW_NANOS;
 

@@ -161,7 +161,7 @@ impl CableLog<'_> {
     /// of a load that does not vary.
     fn set_up(&self, residual_n: &[f64], offset_n: f64) -> SetUp {
         let gain = self.raw.params.frictionless_gain();
-        let mut set_up = SetUp::new(gain);
+        let mut set_up = SetUp::new(gain, self.record.reference_is_known);
         let samples = self.raw.rows.iter().zip(self.raw.references_n).zip(residual_n).enumerate();
         for (cycle, ((row, reference_n), residual_n)) in samples {
             if row.signals.jump || self.raw.starts.contains(&cycle) {

@@ -1,5 +1,7 @@
 //! Selects the samples that a fit uses, with the reasons for leaving out the others.
 
+mod jumps;
+
 use std::ops::Range;
 
 use fric_core::CableParams;
@@ -11,6 +13,8 @@ use super::noise::white_noise;
 use super::record::Row;
 use super::steps::CoarseSteps;
 use super::still::{runs, stands_still};
+
+pub use jumps::leave_out_jumps;
 
 /// Counts of used samples, and of samples left out by reason. Every sample is counted once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
