@@ -66,20 +66,19 @@ pub fn read<'a>(
 fn compare(told: &str, own: &Model, first: &Model) -> Outcome<Vec<String>> {
     let [of_own, of_first] = [own, first].map(|model| model.robot.options());
     let [own_is_known, first_is_known] = [own, first].map(|model| model.robot.params().known_reference().is_some());
-    let differs = if own.robot.cable_names() != first.robot.cable_names() {
-        Some("has other cables than")
-    } else {
-        match (own_is_known, first_is_known) {
-            (true, false) => Some("states a load under `[log] reference`, unlike"),
-            (false, true) => Some("states no load under `[log] reference`, unlike"),
-            _ => None,
-        }
+    let has_same_cables = own.robot.cable_names() == first.robot.cable_names();
+    let differs = match (has_same_cables, own_is_known, first_is_known) {
+        (false, ..) => Some("has other cables than"),
+        (true, true, false) => Some("states a load under `[log] reference`, unlike"),
+        (true, false, true) => Some("states no load under `[log] reference`, unlike"),
+        _ => None,
     };
     if let Some(differs) = differs {
         return Err(Failure::new(format!("{told}: the robot file attached to it {differs} that of the first log"))
             .advise("Name one robot file for all logs with --model."));
     }
     let is_same_machine = of_own.cable == of_first.cable && of_own.platform == of_first.platform;
-    let warning = format!("{told}: the robot file attached to it has other values than that of the first log, which are used");
+    let warning =
+        format!("{told}: the robot file attached to it has other values than that of the first log, which are used");
     Ok(if is_same_machine { Vec::new() } else { vec![warning] })
 }

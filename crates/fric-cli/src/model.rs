@@ -16,8 +16,12 @@ use crate::terminal;
 pub fn read_text(path: &Path, kind: &str) -> Outcome<(String, String)> {
     let origin = path.display().to_string();
     let text = text_file::read(path).map_err(|error| {
-        Failure::new(format!("cannot read the {kind} file {origin}: {error}"))
-            .advise("Check the path given with --model.")
+        let is_locked = error.kind() == std::io::ErrorKind::PermissionDenied;
+        Failure::new(format!("cannot read the {kind} file {origin}: {error}")).advise(if is_locked {
+            "Check its permissions."
+        } else {
+            "Check the path given with --model."
+        })
     })?;
     let other = [("robot", ROBOT_FORMAT), ("manipulator", MANIPULATOR_FORMAT)]
         .into_iter()

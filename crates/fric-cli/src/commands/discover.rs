@@ -38,7 +38,7 @@ pub fn run(arguments: &DiscoverArguments) -> Outcome {
     let (outcome, found) = discover::run(&runs, &options, &mut watch)?;
     if let Some(file) = extended_file {
         let text = found.extended(&model.text, &model.origin)?;
-        outputs.add(file.complete_with(&text)?, "the robot file with what was found");
+        outputs.add(file.complete_with(&text)?, "the robot file with what was found, and values fitted to the log");
     }
     outputs.write_report(|provenance| report::discovery::page(&outcome, found.cables(), provenance))?;
     outputs.finish(&outcome, &outcome.summary(), &next_step(logs, output.as_deref()))

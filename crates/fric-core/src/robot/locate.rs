@@ -86,11 +86,27 @@ fn error_line(text: &str, error: &toml::de::Error) -> Option<usize> {
     error.span().map(|span| text.get(..span.start.min(end)).unwrap_or(text).matches('\n').count() + 1)
 }
 
+/// The value of a key that is a number with a decimal comma, in a line that is not valid.
+fn decimal_comma(line: &str) -> Option<&str> {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    line.split('=').skip(1).find_map(|value| {
+        let number = value.trim_start().split([' ', '}', '#', ']']).next()?.trim_end_matches(',');
+        let (whole, decimals) = number.split_once(',')?;
+        (is_number(whole.trim_start_matches('-')) && is_number(decimals)).then_some(number)
+    })
+}
+
 /// What is wrong with a text that did not become options, in one line and in the words of the file; `format` is what the file's
 /// `format` should be.
 fn describe(text: &str, error: &toml::de::Error, format: &str) -> String {
     let message = error.message().trim().replace('\n', "; ");
-    let Ok(root) = DeTable::parse(text) else { return format!("is not valid TOML: {message}") };
+    let Ok(root) = DeTable::parse(text) else {
+        let line = error_line(text, error).and_then(|line| text.lines().nth(line - 1)).unwrap_or_default();
+        return match decimal_comma(line) {
+            Some(number) => format!("`{number}` is no number; write it with a decimal point"),
+            None => format!("is not valid TOML: {message}"),
+        };
+    };
     let start = error.span().map_or(0, |span| span.start);
     let keys = keys_around(root.into_inner(), start);
     let key = keys.last().map_or("the file", String::as_str);

@@ -381,7 +381,8 @@ fn force_errors(
 ) -> ForceErrors {
     let gain = record.params.frictionless_gain();
     let before_n = frictionless_errors(record);
-    let mut errors = ForceErrors { before_n, set_up: SetUp::new(gain, record.reference_is_known), ..ForceErrors::default() };
+    let mut errors =
+        ForceErrors { before_n, set_up: SetUp::new(gain, record.reference_is_known), ..ForceErrors::default() };
     for (cycle, reference_n) in record.references_n.iter().enumerate().filter(|(_, known)| known.is_finite()) {
         errors.reference_n.add(*reference_n);
         let shift_n = zero_shifts_n.and_then(|shifts_n| shifts_n.get(cycle)).copied();

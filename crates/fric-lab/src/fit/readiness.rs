@@ -281,7 +281,8 @@ fn without_pose(log: &LogTable, has_columns: bool) -> (String, &'static str) {
 /// # Errors
 /// [`FitError`] if the reference of a cable is the force of its own sensor.
 pub fn references(samples: &SampleStore<'_>, names: &[&str]) -> Result<(), FitError> {
-    let advice = "Name the column or topic of the force at the platform as the reference, under `[log]` in the robot file.";
+    let advice =
+        "Name the column or topic of the force at the platform as the reference, under `[log]` in the robot file.";
     samples.copied_references(names).map_or(Ok(()), |cause| Err(FitError::new(cause, advice)))
 }
 
@@ -311,18 +312,16 @@ pub(crate) fn of_forces(robot: &RobotFile, holdings: &Holdings, advice: &'static
         };
         readiness.lacks.push(Lack { cause: cause + &of_cables(&names, &cables), advice, instead, cables });
     }
-    let courses: [(&str, &'static str, fn(&CableHoldings) -> Course); 2] = [
-        ("length", STILL_ADVICE, |of| of.length_m),
-        ("reference", CONSTANT_ADVICE, |of| of.reference_n),
-    ];
-    let is_known = params.known_reference().is_some();
-    for (signal, advice, of) in courses.into_iter().filter(|(signal, ..)| *signal == "length" || !is_known) {
-        let cables = without(&readiness, &|cable| holdings.cables.get(cable).is_none_or(|all| !of(all).changed));
+    let add_still = |readiness: &mut Readiness, signal: &str, advice, of: fn(&CableHoldings) -> Course| {
+        let cables = without(readiness, &|cable| holdings.cables.get(cable).is_none_or(|all| !of(all).changed));
         if !cables.is_empty() {
             let listed: Vec<&str> = cables.iter().filter_map(|cable| names.get(*cable).copied()).collect();
-            let cause = format!("the {signal} of {} never changes", listed.join(", "));
-            readiness.lacks.push(Lack { cause, advice, instead: None, cables });
+            readiness.add(format!("the {signal} of {} never changes", listed.join(", ")), advice, cables);
         }
+    };
+    add_still(&mut readiness, "length", STILL_ADVICE, |of| of.length_m);
+    if params.known_reference().is_none() {
+        add_still(&mut readiness, "reference", CONSTANT_ADVICE, |of| of.reference_n);
     }
     let follows_pose = |cable: usize| params.cables().get(cable).is_some_and(fric_core::CableParams::needs_pose);
     let cables = if holdings.posed == 0 { without(&readiness, &follows_pose) } else { Vec::new() };

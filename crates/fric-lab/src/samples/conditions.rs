@@ -119,6 +119,14 @@ pub fn conditions<'a>(record: &CableRecord<'a>) -> Vec<Condition<'a>> {
     conditions
 }
 
+/// Returns the conditions over which an effect of the machine has one size: all but the sensor force and its rate, which contain what a model leaves, and load,
+/// time and log. `all` are those of [`conditions`].
+pub fn steady<'a>(record: &CableRecord<'a>, all: &[Condition<'a>]) -> Vec<Condition<'a>> {
+    let without_residual = all.iter().filter(|condition| !["sensor_force", "force_rate"].contains(&condition.signal));
+    let of_run = [load(record), time(record)].into_iter().chain(log(record));
+    without_residual.cloned().chain(of_run).collect()
+}
+
 /// Returns the force at the platform as a condition. The sensor force contains what a model does not explain: a residual depends on it whatever it
 /// comes from.
 pub fn load<'a>(record: &CableRecord<'a>) -> Condition<'a> {

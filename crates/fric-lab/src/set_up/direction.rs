@@ -167,8 +167,8 @@ pub(super) fn warning<'a>(cables: impl Iterator<Item = (&'a str, Direction)>) ->
     let least = ratios.into_iter().reduce(f64::min)?;
     Some(format!(
         "{}: the sensor shows more than the reference while the length grows, and less while it shrinks, by up to {} % of the load, as if friction drove the \
-         motion; the likely cause is a length of the wrong sign, or sensor and reference exchanged, or else a late reference under a load that goes with the length. The length has to grow while the cable is paid out: `factor = -1.0` of its column under \
-         `[log.columns]` turns that of a CSV file",
+         motion; the likely cause is a length of the wrong sign, or sensor and reference exchanged, or else a late reference under a load that goes with the length. The length has to grow while the cable is paid out: in a CSV file, the sign of the \
+         `factor` of its column, and of its speed's, under `[log.columns]` turns it",
         listed(&names),
         significant(-100.0 * least)
     ))

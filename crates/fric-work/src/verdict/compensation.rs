@@ -223,7 +223,10 @@ impl ReplayResult {
             todo.push(format!("Mend the recording of {}; its faults are listed.", cable.name));
         }
         if todo.is_empty() {
-            todo.push("Nothing: the values can go to the control loop.".to_owned());
+            todo.push(
+                "Nothing, if this is another log than the one to which the values were fitted: they can go to the control loop."
+                    .to_owned(),
+            );
         }
         todo
     }
@@ -237,9 +240,8 @@ fn is_many(flagged: u64, samples: u64) -> bool {
 /// Returns the verdict on a fit: the remaining fraction of the error.
 #[must_use]
 pub fn of_fit(result: &FitResult) -> Verdict {
-    let of_cable = |cable: &FitCableResult| {
-        Some(Compared::of_forces(&cable.name, cable.before.as_ref()?, cable.after.as_ref()?))
-    };
+    let of_cable =
+        |cable: &FitCableResult| Some(Compared::of_forces(&cable.name, cable.before.as_ref()?, cable.after.as_ref()?));
     let cables: Vec<Compared> = result.cables.iter().filter_map(of_cable).collect();
     let wrench: Vec<Compared> =
         result.wrench.iter().flat_map(|wrench| Compared::of_wrench(&wrench.before, &wrench.after)).collect();
@@ -252,7 +254,8 @@ pub fn of_fit(result: &FitResult) -> Verdict {
     let worse = worse(&all);
     let it = if worse.is_some() { format!("elsewhere {it}") } else { it.to_owned() };
     let least = all.iter().map(Compared::left).filter(|left| left.is_finite()).fold(1.0, f64::min);
-    let nothing = if !all.is_empty() && least > HARDLY_HELPS && !is_by_few { " It explains next to nothing." } else { "" };
+    let nothing =
+        if !all.is_empty() && least > HARDLY_HELPS && !is_by_few { " It explains next to nothing." } else { "" };
     let left = left.map_or_else(|| format!("{fitted}."), |left| format!("{fitted}; {it} leaves {left}.{nothing}"));
     let left = of_zeros(result).map_or(left.clone(), |zeros| format!("{left} {zeros}"));
     let (tone, sentence) = match worse {

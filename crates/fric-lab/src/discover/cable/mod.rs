@@ -23,7 +23,7 @@ use crate::discover::{Task, rest};
 use crate::effects::Around;
 use crate::fit::{CableRecord, FitOptions, StoreError};
 use crate::recording_fault::{Fault, RecordingFault};
-use crate::samples::conditions::{Condition, conditions, load, log, time};
+use crate::samples::conditions::{Condition, conditions, steady};
 use crate::samples::selection::Standing;
 use crate::samples::split::{Block, split};
 use crate::samples::steps::CoarseSteps;
@@ -64,11 +64,7 @@ pub fn discover_cable(record: &CableRecord<'_>, task: &Task<'_>) -> Result<Cable
     let counts = crate::fit::cables::used(&found);
     let blocks = split(record);
     let conditions = conditions(record);
-    // The sensor force and its rate contain the residual. No effect would appear steady over them.
-    let without_residual =
-        conditions.iter().filter(|condition| !["sensor_force", "force_rate"].contains(&condition.signal));
-    let of_run = [load(record), time(record)].into_iter().chain(log(record));
-    let steady: Vec<Condition<'_>> = without_residual.cloned().chain(of_run).collect();
+    let steady = steady(record, &conditions);
     let (mut start, held) = given_model(record, &solution, &counts, stop);
 
     let measured = crate::samples::interpolated::measured(record);

@@ -83,8 +83,7 @@ impl Search<'_, '_> {
         let [learned, held_out] = [false, true].map(|held_out| self.bench.count(held_out) as f64);
         let needed = self.least_gain(&model) * learned / held_out;
         let near_errors = (UNDECIDED * needed * learned / model.training).sqrt().max(NEAR_ERRORS);
-        let fits = self.bench.try_all(&models, near_errors);
-        self.effort.add(&fits);
+        let fits = self.try_all(&models, near_errors);
         // Where every start leads away, the effect is best left out.
         let left_out = |model_with: Model| Trial { free: model_with.free, ..model.clone() };
         let left_out: Vec<_> = owners.iter().cloned().zip(models.into_iter().map(left_out)).collect();
@@ -146,8 +145,7 @@ impl Search<'_, '_> {
                 .filter(|start| settings.iter().any(|place| start[*place].to_bits() != trial.values[*place].to_bits()))
                 .map(with_settings_of)
                 .collect();
-            let fits = self.bench.try_all(&others, trial.near_errors);
-            self.effort.add(&fits);
+            let fits = self.try_all(&others, trial.near_errors);
             let best = fits.into_iter().min_by(|one, other| one.training.total_cmp(&other.training));
             if let Some(best) = best.filter(|best| best.training < trial.training) {
                 self.fits.insert(set_of(found), self.upright(effect, best));
@@ -166,8 +164,7 @@ impl Search<'_, '_> {
             is_coarse.then_some((set, model))
         };
         let (sets, models): (Vec<Set>, Vec<Model>) = sets.filter_map(refined).unzip();
-        let fits = self.bench.try_all(&models, NEAR_ERRORS);
-        self.effort.add(&fits);
+        let fits = self.try_all(&models, NEAR_ERRORS);
         self.fits.extend(sets.into_iter().zip(fits));
     }
 
@@ -191,9 +188,16 @@ impl Search<'_, '_> {
             model.free.retain(|parameter| !of_effect.contains(parameter));
         }
         let trial = self.bench.try_one(&model);
-        self.effort.add(std::slice::from_ref(&trial));
+        self.effort.add(trial.evaluation_count);
         self.fits.insert(set, trial.clone());
         trial
+    }
+
+    /// Fits several models, each to the given distance from its minimum in standard errors, and counts the work.
+    pub(super) fn try_all(&self, models: &[Model], near_errors: f64) -> Vec<Trial> {
+        let fits = self.bench.try_all(models, near_errors);
+        self.effort.add(fits.iter().map(|trial| trial.evaluation_count).sum());
+        fits
     }
 
     /// Optimises the model with a set of effects to convergence.

@@ -43,8 +43,7 @@ impl Search<'_, '_> {
             with.values[TIME_CONSTANT] = time_constant_s;
             with
         };
-        let fits = self.bench.try_all(&times_s.map(with_lag).collect::<Vec<Model>>(), NEAR_ERRORS);
-        self.effort.add(&fits);
+        let fits = self.try_all(&times_s.map(with_lag).collect::<Vec<Model>>(), NEAR_ERRORS);
         let used = self.bench.used(false);
         let of = |trial: Trial| {
             let left_n = self.bench.residuals_n(&trial.values);
@@ -117,8 +116,7 @@ impl Search<'_, '_> {
                 (values[TIME_CONSTANT], values[SMOOTHING]) = (time_constant_s, ratio * time_constant_s);
                 Model { values, free: model.free.clone() }
             };
-            let fits = self.bench.try_all(&SMOOTHING_RATIOS.map(with), NEAR_ERRORS);
-            self.effort.add(&fits);
+            let fits = self.try_all(&SMOOTHING_RATIOS.map(with), NEAR_ERRORS);
             trial = fits.into_iter().min_by(|one, other| one.training.total_cmp(&other.training))?;
         }
         let inflation = inflation(self.bench, &trial, &trial.free);

@@ -241,17 +241,24 @@ impl<'b, 'a> Search<'b, 'a> {
     fn leave(&mut self, found: &mut Vec<Effect>) -> Vec<Named> {
         loop {
             let named = self.justified(found);
-            let held_out = |named: &&Named| named.without.held_out;
-            let refused = named.iter().filter(|named| named.refusal.is_some());
-            let weakest = refused.min_by(|one, other| held_out(one).total_cmp(&held_out(other)));
-            let Some(Named { effect, refusal: Some(refusal), .. }) = weakest else { return named };
-            let (effect, refusal) = (*effect, *refusal);
+            let Some((effect, refusal)) = refused(&named).first().copied() else { return named };
             found.retain(|of| *of != effect);
             // Effects that could not be distinguished from this one can be distinguished without it.
             self.refused.retain(|_, refusal| !matches!(refusal, Refusal::Open(of) if of.effect() == Some(effect)));
             self.refused.insert(effect, refusal);
             self.renumber(found);
         }
+    }
+
+    /// Returns the effects of a model that cannot justify themselves, and the reasons, the weakest first. The model was fitted elsewhere.
+    pub fn refused_in(&mut self, model: Trial, found: &[Effect]) -> Vec<(Effect, Refusal)> {
+        self.fits.insert(set_of(found), model);
+        refused(&self.justified(found))
+    }
+
+    /// Returns the reason why an effect was set aside; `None` if it was not.
+    pub fn reason_against(&self, effect: Effect) -> Option<Refusal> {
+        self.refused.get(&effect).copied()
     }
 
     /// Makes a second ripple the first where the first is gone, as in a robot file. What was refused is then the second.
@@ -295,6 +302,13 @@ impl<'b, 'a> Search<'b, 'a> {
         let (count, more) = (self.bench.count(false) as f64 / inflation, SHARES as f64);
         delta_bic(count, with / without, more)
     }
+}
+
+/// Returns the effects that cannot justify themselves, and the reasons, the weakest first.
+fn refused(named: &[Named]) -> Vec<(Effect, Refusal)> {
+    let mut refused: Vec<(&Named, Refusal)> = named.iter().filter_map(|named| Some((named, named.refusal?))).collect();
+    refused.sort_by(|(one, _), (other, _)| one.without.held_out.total_cmp(&other.without.held_out));
+    refused.into_iter().map(|(named, refusal)| (named.effect, refusal)).collect()
 }
 
 /// Returns the values of a model without an effect.

@@ -24,7 +24,7 @@ const WORTH_TELLING: f64 = 1.0;
 /// Minimum difference between a range's fraction of the excess and its fraction of the samples.
 const LEAST_MORE: f64 = 0.1;
 /// A range with this fraction of the samples is the whole condition, not a place.
-const WHOLE: f64 = 0.995;
+pub const WHOLE: f64 = 0.995;
 /// Bins beside the densest one belong to it down to this fraction of its density.
 const SHOULDER: f64 = 0.4;
 /// Number of equal shifts of the residual against the conditions through the log, which give the chance level.

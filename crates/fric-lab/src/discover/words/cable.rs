@@ -7,7 +7,7 @@ use fric_core::effects::Effect;
 use crate::certainty::one_load::is_gain;
 use crate::discover::Verdict;
 use crate::discover::naming::Refusal;
-use crate::discover::rest::places::LEAST_CONCENTRATION;
+use crate::discover::rest::places::{LEAST_CONCENTRATION, WHOLE};
 use crate::discover::result::{
     DiscoverCableResult, EffectResult, RevisedResult, TriedResult, UnexplainedResult, WhereResult,
 };
@@ -73,15 +73,21 @@ impl WhereResult {
         }
     }
 
+    fn is_whole(&self) -> bool {
+        self.share_of_samples.is_some_and(|share| share >= WHOLE)
+    }
+
     /// Returns the fraction of the excess in the range, as a sentence without its full stop. `of` names the quantity.
     #[must_use]
     pub fn in_words(&self, of: &str, times: &Times<'_>) -> String {
         // Writing to a String cannot fail.
         let mut text = match self.share_of_excess {
+            // A range that holds all samples tells nothing, but that the condition matters.
+            Some(_) if self.is_whole() => format!("{of} changes with the {}", condition(self.signal)),
             Some(share) => format!("{} of {of} sits {}", percent(share), self.range_in_words()),
             None => format!("{of} sits {}", self.range_in_words()),
         };
-        if let Some(share) = self.share_of_samples.filter(|share| *share < 0.995) {
+        if let Some(share) = self.share_of_samples.filter(|_| !self.is_whole()) {
             let _ = write!(text, ", {} of the samples", percent(share));
         }
         if self.significance.is_some_and(|significance| significance < LEAST_CONCENTRATION) {

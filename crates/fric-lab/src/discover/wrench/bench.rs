@@ -1,6 +1,7 @@
 //! All cables with their samples, and the fit of a model of them to the wrench on the platform.
 
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use fric_core::effects::Effect;
@@ -9,6 +10,7 @@ use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 use super::geometry::{Description, Geometry};
 use super::model::{Model, Unknown};
 use crate::certainty::scores::Scores;
+use crate::discover::effort::Effort;
 use crate::fit::{CableRecord, Parameter};
 use crate::replay::{Deviation, WrenchReference};
 use crate::samples::noise::white_noise;
@@ -16,6 +18,7 @@ use crate::samples::split::{Block, used};
 use crate::search::gram::Gram;
 use crate::search::gram::inverse_of_normal;
 use crate::search::optimizer::minimize;
+use crate::search::pass::Forces;
 use crate::search::problem::{Comparison, Loss, Member, Problem};
 use crate::search::vector::Coordinate;
 
@@ -48,6 +51,8 @@ pub struct Bench<'a> {
     /// Transforms deviations into uncorrelated numbers of variance 1.
     pub whitening: Matrix6<f64>,
     pub stop: &'a AtomicBool,
+    /// The work of the search.
+    pub effort: Arc<Effort>,
 }
 
 impl<'a> Bench<'a> {
@@ -120,7 +125,7 @@ impl<'a> Bench<'a> {
         if model.changes.is_empty() {
             return Vec::new();
         }
-        let forces = self.with_problem(model, Vec::new(), |problem| problem.forces(&model.values)).unwrap_or_default();
+        let forces = self.forces(model);
         let force_n = |place: usize, cable: usize| forces.get(cable).map_or(f64::NAN, |forces| forces.at(place).0);
         let of = |of: &Geometry| self.description.tangents(*of, &model.changes, force_n);
         let mut all: Vec<Vec<Vector6<f64>>> = model.changes.keys().flat_map(of).collect();
@@ -181,6 +186,7 @@ impl<'a> Bench<'a> {
         let minimum = minimize(&coordinates, &start, 6 * self.count(false), near_errors, |numbers| {
             self.gram(&model.moved(numbers), None).map(|gram| gram.normal_equations())
         });
+        self.effort.add(minimum.evaluation_count);
         self.judged(model.moved(&minimum.values))
     }
 
@@ -280,6 +286,19 @@ impl<'a> Bench<'a> {
             lever.dot(deviation) / lever.norm_squared()
         };
         columns.zip(deviations).map(nearest).collect()
+    }
+
+    /// Returns the force of one cable that the wrench shows in each sample beside the forces of the others by a model: the one that comes nearest to it. The
+    /// model of the cable itself has no part in it.
+    pub fn shown_by_others_n(&self, model: &Model, cable: usize) -> Vec<f64> {
+        let errors_n = self.of_cable_n(model, &self.deviations(model), cable);
+        let forces = self.forces(model);
+        let force_n = |place: usize| forces.get(cable).map_or(f64::NAN, |forces| forces.at(place).0);
+        errors_n.iter().enumerate().map(|(place, error_n)| force_n(place) - error_n).collect()
+    }
+
+    fn forces(&self, model: &Model) -> Vec<Arc<Forces>> {
+        self.with_problem(model, Vec::new(), |problem| problem.forces(&model.values)).unwrap_or_default()
     }
 
     /// Returns the root mean square of the wrench's error, six components, if the force of every cable is off by `ratio` of itself and by its `wander_n`, N,

@@ -19,6 +19,8 @@ mod report;
 mod screen;
 mod sensors;
 
+use std::sync::Arc;
+
 use fric_core::Wrench;
 use fric_core::effects::Effect;
 use fric_core::robot::edit::{CableEdit, rewrite, set_platform};
@@ -133,6 +135,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         measured: &references.measured,
         whitening: Matrix6::identity(),
         stop: progress.stop_flag(),
+        effort: Arc::default(),
     };
     let given =
         Model { values: first.values, free: first.free, alike: Vec::new(), changes: bench.description.fitted() };

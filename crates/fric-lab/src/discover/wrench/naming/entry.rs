@@ -16,7 +16,7 @@ impl Search<'_> {
     pub(super) fn enter(&mut self, found: &mut Vec<Candidate>) {
         while found.len() < MOST {
             let trial = self.fit(found);
-            if self.excess(&trial) <= NEGLIGIBLE {
+            if self.excess(&trial) <= NEGLIGIBLE || self.is_spent(found) {
                 break;
             }
             let enough = self.least_gain(&trial);
@@ -30,7 +30,9 @@ impl Search<'_> {
             entrants.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
             let has_evidence = |(candidate, with): &&(Candidate, Trial)| {
                 let inflation = self.inflation(*candidate, with);
-                self.delta_bic(&trial, with, candidate.count(), inflation) < 0.0
+                // As on one cable, apparent evidence that comes only from the memory of the deviations is no reason to continue, but for friction.
+                let enough = if candidate.effect().is_some_and(Effect::is_friction) { 0.0 } else { -STRONG_BIC };
+                self.delta_bic(&trial, with, candidate.count(), inflation) < enough
             };
             let Some((candidate, _)) = entrants.iter().find(has_evidence) else { break };
             found.push(*candidate);

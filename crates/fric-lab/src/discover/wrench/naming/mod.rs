@@ -10,10 +10,13 @@
 //!    return in this search.
 //! 3. *Exchange.* Each name is compared with the best other candidate in its place. An effect that several other cables have too gives way only to strong
 //!    evidence.
+//! 4. *Alone.* Beside the forces of the others, the wrench shows the force of one cable. On that log of one cable its names have to keep the rules of a search on
+//!    one cable.
 //!
-//! The search ends if nothing changes, and in any case after [`ROUNDS`] rounds of at most [`MOST`] names. It begins without a name or, where that is better
+//! The search ends if nothing changes, after [`ROUNDS`] rounds of at most [`MOST`] names, and in any case when its work is spent ([`Effort`](crate::discover::effort::Effort)). It begins without a name or, where that is better
 //! than any single name, with all force sensors in doubt.
 
+mod alone;
 mod doubt;
 mod entry;
 mod exchange;
@@ -22,6 +25,7 @@ mod justification;
 mod standing;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::Matrix6;
 
@@ -159,7 +163,7 @@ impl<'a> Search<'a> {
     /// Prepares a search beside the fitted given model, with the covariance and the noise of another model's deviations; `None` if there are too few
     /// deviations.
     pub fn new(bench: &Bench<'a>, base: &Trial, model: &Model) -> Option<Self> {
-        let bench = Bench { whitening: whitening(bench, model)?, ..bench.clone() };
+        let bench = Bench { whitening: whitening(bench, model)?, effort: Arc::default(), ..bench.clone() };
         let noise = bench.noise(model)?;
         let believed_square = |cables| bench.believed_square(model, BELIEVED_RATIO, cables);
         let count = bench.records.len();
@@ -186,19 +190,12 @@ impl<'a> Search<'a> {
         if !found.is_empty() {
             self.fits.insert(set_of(&found), self.bench.fit(&before.trial.model, NEAR_ERRORS));
         }
-        for _ in 0..ROUNDS {
-            let refused = self.refused.len();
-            self.enter(&mut found);
-            self.unite(&mut found);
-            self.take_apart(&mut found);
-            self.leave(&mut found);
-            let is_exchanged = self.exchange(&mut found);
-            if !is_exchanged && self.refused.len() == refused {
-                break;
-            }
+        let mut named = self.rounds(&mut found);
+        while let Some((candidate, refusal)) = self.refused_alone(&found) {
+            found.retain(|of| *of != candidate);
+            self.refused.insert(candidate, refusal);
+            named = self.rounds(&mut found);
         }
-        // The last round may have exchanged a name.
-        let mut named = self.leave(&mut found);
         for (place, named) in named.iter_mut().enumerate() {
             named.runner_up = self.runner_up(&found, place);
         }
@@ -206,6 +203,28 @@ impl<'a> Search<'a> {
         let trial = self.fit(&found);
         let is_complete = self.excess(&trial) <= WORTH;
         Naming { trial, whitening: self.bench.whitening, named, tried, is_complete }
+    }
+
+    /// Adds names, exchanges them and sets aside those that cannot stay, until nothing changes. Returns those that stay.
+    fn rounds(&mut self, found: &mut Vec<Candidate>) -> Vec<Named> {
+        for _ in 0..ROUNDS {
+            let refused = self.refused.len();
+            self.enter(found);
+            self.unite(found);
+            self.take_apart(found);
+            self.leave(found);
+            let is_exchanged = self.exchange(found);
+            if !is_exchanged && self.refused.len() == refused || self.is_spent(found) {
+                break;
+            }
+        }
+        // The last round may have exchanged a name.
+        self.leave(found)
+    }
+
+    /// Whether the search has to come to an end.
+    fn is_spent(&self, found: &[Candidate]) -> bool {
+        self.bench.effort.is_spent(found.len())
     }
 }
 
