@@ -115,7 +115,8 @@ fn the_set_points_hold_what_they_promise() {
 #[test]
 fn a_winch_on_a_bench_gets_lengths() {
     let place = place_with(&bench_robot().replace("0.001", "0.01").replace("'winch'", "'a \"winch\", rubbing'"));
-    excite(&place, &["--preview", "run.html"]).succeeds();
+    let run = excite(&place, &["--preview", "run.html"]).succeeds();
+    assert!(unwrapped(&run.stdout).contains("cable lengths 0.800 to 1.200 m"), "{run:#?}");
     let (columns, phases) = columns(&place.read("run.csv"));
     let names: Vec<&str> = columns.keys().map(String::as_str).collect();
     assert_eq!(names, ["a \"winch\", rubbing_length_m", "a \"winch\", rubbing_speed_m_per_s", "time_s"]);

@@ -25,6 +25,9 @@ pub fn describe(excitation: &Excitation, series: &RunSeries) -> String {
         });
         // Writing to a String cannot fail, here and below.
         let _ = write!(text, ", from {from} to {to} m");
+    } else {
+        let (least_m, greatest_m) = series.length_m().ends();
+        let _ = write!(text, ", cable lengths {least_m:.3} to {greatest_m:.3} m");
     }
     if let Some(tension_n) = series.tension_n() {
         let _ = write!(text, ", cable forces {:.2} to {:.2} N", tension_n.least, tension_n.greatest);

@@ -10,6 +10,7 @@ use super::chart::{Chart, Span};
 use super::plot::Plots;
 use super::run::{RunInterval, RunSeries};
 use super::series::Extent;
+use crate::excite::describe;
 use crate::provenance::Provenance;
 use crate::verdict::{Tone, Verdict};
 
@@ -53,7 +54,6 @@ pub fn page(
 ) -> String {
     let kind = if purpose.is_some() { "designed run" } else { "identification run" };
     let title = format!("{}: {kind}", robot.options().name);
-    let duration_s = excitation.trajectory().duration_s();
     let content = html! {
         @if let Some(purpose) = purpose {
             section {
@@ -85,11 +85,7 @@ pub fn page(
         }
         (phases(series))
     };
-    let sentence = format!(
-        "{} set points in {duration_s:.1} s, one every {} s.",
-        excitation.total_cycles(),
-        robot.options().cycle_s
-    );
+    let sentence = format!("{}, one set point every {} s.", describe(excitation, series), robot.options().cycle_s);
     let command = purpose.map_or("fit", |purpose| purpose.command);
     let todo = vec![format!("Look whether the path is free, then run it and record a log for fric-cli {command}.")];
     let verdict = Verdict { tone: Tone::Mixed, sentence, todo };

@@ -114,6 +114,11 @@ impl RunSeries {
         all.is_something().then_some(all)
     }
 
+    /// Returns the range of the lengths of the whole run over all cables, m.
+    pub(crate) fn length_m(&self) -> Extent {
+        self.intervals.iter().map(|interval| interval.length_m).fold(Extent::NOTHING, Extent::merged)
+    }
+
     /// Returns the intervals in order.
     pub(crate) fn intervals(&self) -> &[RunInterval] {
         &self.intervals
