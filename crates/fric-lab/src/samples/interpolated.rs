@@ -37,7 +37,8 @@ fn leave_out_repeats(repeated: &[bool], measured: &mut [bool]) {
     measured.copy_from_slice(if are_apart { &new } else { &together });
 }
 
-fn measured_references(record: &CableRecord<'_>) -> Vec<bool> {
+/// Returns the same of the reference alone.
+pub fn measured_references(record: &CableRecord<'_>) -> Vec<bool> {
     if record.reference_is_known {
         return vec![true; record.rows.len()];
     }

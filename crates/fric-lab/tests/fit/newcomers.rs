@@ -94,6 +94,25 @@ fn fit_known(error_n: impl Fn(f64) -> f64) -> CableFit {
     log.fit(&known(&format!("{GIVEN}, offset_n = 0.1")), &free).remove(0)
 }
 
+/// The force `m·(g − a)` that someone has calculated stays the same at constant speed, half of every second here. A sensor that does so hangs.
+#[test]
+fn a_calculated_reference_does_not_stand_still() {
+    let left_out = |noise_n: f64| {
+        let mut log = log(&[]);
+        for (cycle, number) in log.0.iter_mut().zip(0_i32..) {
+            let phase = 1e-3 * f64::from(number % 1000);
+            let accelerates = phase > 0.5;
+            let wave_n = if accelerates { 0.3 * (4.0 * core::f64::consts::PI * phase).sin().powi(3) } else { 0.0 };
+            // Of a sensor that hangs the noise is missing as well.
+            let of_noise_n = if accelerates { noise_n * (f64::from(number) * f64::from(number)).sin() } else { 0.0 };
+            cycle.reference_force_n = vec![8.0 + wave_n + of_noise_n];
+        }
+        log.fit(&bench(PULLEYS, GIVEN), &options(&[])).remove(0).samples.without_reference
+    };
+    assert_eq!(left_out(0.0), 0);
+    assert!(left_out(0.02) > 1000);
+}
+
 /// Under a constant load that is known the reference never changes, and is no stuck sensor.
 #[test]
 fn a_constant_reference_is_learned_from() {

@@ -153,7 +153,7 @@ pub fn discover_wrench(measurements: &Measurements<'_>, progress: &Progress) -> 
         doubted => (nothing, doubted),
     };
     let mut naming = searched(&bench, &base, search, start, progress)?;
-    if let Some(start) = other_start.filter(|_| !naming.is_complete) {
+    if let Some(start) = other_start.filter(|_| !naming.is_complete && !naming.is_cut_short) {
         let search = Search::new(&bench, &base, &start.trial.model).ok_or_else(too_short)?;
         let other = searched(&bench, &base, search, start, progress)?;
         if naming::is_better(&bench, &other, &naming.trial, &naming.candidates()) {
@@ -202,7 +202,10 @@ fn searched<'a>(
         let before = naming.candidates();
         naming = search.run(&naming);
         stages.finish_one();
-        if look == LOOKS || naming.candidates().iter().all(|candidate| before.contains(candidate)) {
+        if look == LOOKS
+            || naming.is_cut_short
+            || naming.candidates().iter().all(|candidate| before.contains(candidate))
+        {
             break;
         }
         search = Search::new(bench, base, &naming.trial.model).ok_or_else(too_short)?;

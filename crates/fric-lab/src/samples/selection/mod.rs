@@ -9,6 +9,7 @@ use fric_core::parameters::{MU, SIGMA, Values};
 
 use super::cable::CableRecord;
 use super::held::repeated_forces;
+use super::interpolated::measured_references;
 use super::noise::white_noise;
 use super::record::Row;
 use super::steps::CoarseSteps;
@@ -100,7 +101,9 @@ fn is_calculated(record: &CableRecord<'_>) -> bool {
         changing_n.iter_mut().skip(run.start).take(run.len()).for_each(|reference_n| *reference_n = f64::NAN);
     }
     let noises_n = white_noise(&changing_n).zip(white_noise(&record.shown_forces_n()));
+    // The line between two measurements has no noise either.
     noises_n.is_some_and(|(of_reference, of_sensor)| of_reference < CALCULATED_RATIO * of_sensor)
+        && !measured_references(record).contains(&false)
 }
 
 /// Leaves out references that were interpolated between two measurements.

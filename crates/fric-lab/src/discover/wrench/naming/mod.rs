@@ -82,6 +82,8 @@ pub struct Naming {
     pub tried: Vec<Tried>,
     /// Whether the model leaves nothing beside the noise that needs an explanation.
     pub is_complete: bool,
+    /// Whether the search had to come to an end, so that no further one begins.
+    pub is_cut_short: bool,
 }
 
 impl Naming {
@@ -89,7 +91,7 @@ impl Naming {
     pub fn start(trial: Trial, whitening: &Matrix6<f64>, candidates: Vec<Candidate>) -> Self {
         let named = |candidate| Named { candidate, delta_bic: f64::NAN, runner_up: None };
         let named = candidates.into_iter().map(named).collect();
-        Self { trial, whitening: *whitening, named, tried: Vec::new(), is_complete: false }
+        Self { trial, whitening: *whitening, named, tried: Vec::new(), is_complete: false, is_cut_short: false }
     }
 
     /// Returns what is named.
@@ -202,7 +204,8 @@ impl<'a> Search<'a> {
         let tried = self.tried(&found);
         let trial = self.fit(&found);
         let is_complete = self.excess(&trial) <= WORTH;
-        Naming { trial, whitening: self.bench.whitening, named, tried, is_complete }
+        let is_cut_short = self.is_spent(&found);
+        Naming { trial, whitening: self.bench.whitening, named, tried, is_complete, is_cut_short }
     }
 
     /// Adds names, exchanges them and sets aside those that cannot stay, until nothing changes. Returns those that stay.
@@ -213,8 +216,8 @@ impl<'a> Search<'a> {
             self.unite(found);
             self.take_apart(found);
             self.leave(found);
-            let is_exchanged = self.exchange(found);
-            if !is_exchanged && self.refused.len() == refused || self.is_spent(found) {
+            let is_exchanged = !self.is_spent(found) && self.exchange(found);
+            if !is_exchanged && self.refused.len() == refused {
                 break;
             }
         }
