@@ -249,6 +249,9 @@ impl From<output::OutputError> for Fault {
     fn from(error: output::OutputError) -> Self {
         match &error {
             output::OutputError::File { source, .. } => Self::output(format!("{error}: {}", reason(source))),
+            output::OutputError::Exists { path } => {
+                Self::output(format!("`{}` exists; choose another name, or replace it with force=True", path.display()))
+            }
             error => Self::output(in_full(error)),
         }
     }
