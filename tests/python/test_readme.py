@@ -20,7 +20,7 @@ from support import HANG_S, ROOT
 CARGO = """#!/bin/sh
 case "$*" in
     "run --release -p fric-cli -- "*) shift 5; exec fric-cli "$@" ;;
-    "install --path crates/fric-cli") test -f crates/fric-cli/Cargo.toml ;;
+    "install --locked --path crates/fric-cli") test -f crates/fric-cli/Cargo.toml ;;
     # Sweeps of hours: that there is such a program is all that is looked at.
     "run --release -p fric-"*"lab --example "*) grep -q "name = \\"$6\\"" "crates/$4/Cargo.toml" ;;
     *) echo "not a command that the test knows: cargo $*" >&2; exit 1 ;;

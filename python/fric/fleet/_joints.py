@@ -105,7 +105,8 @@ def candidates(time: Array, values: Array, variance: Array, series_count: int) -
 def _may_slope(time: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
     """Whether at least two dates follow that of each log: otherwise a slope from there is no other line than a step."""
     following = np.append(time, np.inf)[np.searchsorted(time, time, side="right")]
-    return following < time[-1]
+    may: np.ndarray[Any, np.dtype[np.bool_]] = following < time[-1]
+    return may
 
 
 def residual_sums(rest: Line, kind: Literal["step", "slope", "step_and_slope"], time: Array, values: Array, whiten: Whiten) -> Array:
