@@ -1,5 +1,6 @@
 //! A bench without a force sensor at the platform: its load is known.
 
+use super::logs::{Storage, rewrite};
 use super::support::{Place, unwrapped};
 
 fn bench(reference: &str, mu: f64) -> String {
@@ -73,6 +74,18 @@ fn each_log_has_the_load_that_its_attached_file_states() {
     place.write("measured.toml", bench("'/reference_forces'", 0.02));
     place.run(&[&simulate[..], &["measured.toml"]].concat()).succeeds();
     place.run(&both).fails(1, &["`other.mcap`", "states no load"]).advises(&["--model"]);
+    place.write("other.mcap", rewrite(&place.read("10.0.mcap"), Storage::Zstd, None, |_, _| true));
+    place.run(&both).fails(1, &["`other.mcap`", "no robot file attached"]).advises(&["convert", "--model"]);
+}
+
+#[test]
+fn a_decimal_comma_is_told() {
+    let place = place_of("{ hanging_mass_kg = 5.0 }");
+    for (written, told) in [("{ hanging_mass_kg = 5,25 }", "`5,25`"), ("{ constant_n = 49,05 } # N", "`49,05`")] {
+        place.write("comma.toml", bench(written, 0.02));
+        let run = place.run(&["replay", "log.mcap", "--model", "comma.toml"]);
+        run.fails(1, &["comma.toml, line 5", told, "decimal point"]);
+    }
 }
 
 /// A fit that takes a wrong weight for a zero of the sensor says so.

@@ -51,8 +51,16 @@ pub fn read<'a>(
     for log in logs {
         let (told, source) = (format!("`{}`", log.display()), Log::open(&[log])?);
         let own = if model.is_attached() { Model::attached(&source)? } else { None };
-        if let Some(own) = &own {
-            watch.warn(&compare(&told, own, model)?)?;
+        match &own {
+            Some(own) => watch.warn(&compare(&told, own, model)?)?,
+            None if model.is_attached() && model.robot.params().known_reference().is_some() => {
+                let cause = format!(
+                    "{told} has no robot file attached, and the one of another log states the load of that log"
+                );
+                return Err(Failure::new(cause)
+                    .advise("Attach one with its load (fric-cli convert), or name one for all logs with --model."));
+            }
+            None => {}
         }
         // Signals that are not compared with are not read.
         let mut reader = own.as_ref().unwrap_or(model).reader(source, part, Some(unread(reference)))?;
