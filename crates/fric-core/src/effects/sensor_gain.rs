@@ -14,8 +14,8 @@ const EXCITATION: &str = "long movements at cable forces that differ by a factor
 /// The catalogue row.
 pub const ROW: EffectRow = EffectRow {
     kind: "sensor_gain",
-    cause: "the force sensor or its amplifier is calibrated with a wrong slope",
-    remedy: "calibrate the sensor at the winch with known weights",
+    cause: "the force sensor or its amplifier is calibrated with a wrong slope, or a load that the robot file states is another one",
+    remedy: "calibrate the sensor at the winch with known weights; weigh a load that is stated",
     parameters: &[ParameterRow::fitted("gain", "1", [0.1, 1.0, 10.0], EXCITATION)],
     example: &[1.03],
     memory: Memory::Nothing,

@@ -2,9 +2,10 @@
 
 use fric_core::effects::Effect;
 
-use super::Search;
 use super::evidence::inflation;
 use super::justification::is_at_end;
+use super::one_load::as_loud_as;
+use super::{NEGLIGIBLE, STRONG_BIC, Search};
 use crate::candidates::catalogue::fitted;
 use crate::discover::workbench::Trial;
 
@@ -31,6 +32,56 @@ impl Search<'_, '_> {
         }
         self.renumber(found);
         is_changed
+    }
+
+    /// Tries the best other effect in the place of each effect together with those that are superfluous beside it. Returns whether one took the place of
+    /// several. It may be one that the log cannot tell from the single effect: under a hanging weight that is accelerated a little, a gain is the zero and the
+    /// inertia that make up for it.
+    pub(super) fn gather(&mut self, found: &mut Vec<Effect>) -> bool {
+        for place in 0..found.len() {
+            if found.iter().filter(|effect| !effect.is_friction()).count() < 2 || self.is_spent(found) {
+                return false;
+            }
+            let Some((other, _)) = self.alternative(found, place) else { continue };
+            let mut one = found.clone();
+            one[place] = other;
+            self.drop_superfluous(&mut one, other);
+            if one.len() == found.len() {
+                continue;
+            }
+            let (model, trial) = (self.fit(found), self.fit(&one));
+            let as_loud = as_loud_as(&model, trial);
+            let memory = inflation(self.bench, &model, &model.free);
+            if self.delta_bic(&model, &as_loud, memory) < 0.0
+                && as_loud.held_out <= (1.0 + NEGLIGIBLE) * model.held_out
+                && self.justified(&one).iter().all(|named| named.refusal.is_none())
+            {
+                self.refused.remove(&other);
+                *found = one;
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Leaves out the effects for which there is no strong evidence beside a new one, the weakest first. Friction stays.
+    fn drop_superfluous(&mut self, found: &mut Vec<Effect>, new: Effect) {
+        loop {
+            let model = self.fit(found);
+            let mut weakest: Option<(f64, usize)> = None;
+            for place in (0..found.len()).filter(|place| found[*place] != new && !found[*place].is_friction()) {
+                let effect = found[place];
+                let others: Vec<Effect> = found.iter().copied().filter(|of| *of != effect).collect();
+                let without = self.fit(&others);
+                let memory = inflation(self.bench, &model, &fitted(effect));
+                let evidence = self.delta_bic(&without, &model, memory);
+                if evidence >= -STRONG_BIC && weakest.is_none_or(|(most, _)| evidence > most) {
+                    weakest = Some((evidence, place));
+                }
+            }
+            let Some((_, place)) = weakest else { return };
+            found.remove(place);
+        }
     }
 
     /// Returns the best other effect in the place of one. Friction that every model has is not replaced.

@@ -200,7 +200,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let of_the_curve: &[Effect] = &[Effect::SensorGain, Effect::SensorNonlinearity];
         let of_the_speed: &[Effect] = &[Effect::Viscous, Effect::Stribeck, Effect::ViscousNonlinearity];
         let model = self.fit(found);
-        let has_one_load = !self.bench.knows_load(self.noise_n);
+        let has_one_load = !self.bench.knows_load(self.noise_n) && !self.tells_gain(found);
         let is_beside_gain =
             model.free.iter().any(is_gain) && is_one_load(&self.bench.problem(&[], None), &model.values);
         let has_one_speed = has_one_speed(&self.bench.record);
@@ -230,7 +230,11 @@ impl<'b, 'a> Search<'b, 'a> {
             let before = self.refused.len();
             self.enter(found);
             let named = self.leave(found);
-            if self.refused.len() == before && !self.exchange(found) && !self.enter_together(found) {
+            if self.refused.len() == before
+                && !self.exchange(found)
+                && !self.gather(found)
+                && !self.enter_together(found)
+            {
                 return named;
             }
         }

@@ -7,8 +7,9 @@ use fric_core::effects::Effect;
 use fric_core::effects::sensor_gain::GAIN;
 use fric_core::effects::sensor_offset::OFFSET;
 
+use super::evidence::inflation;
 use super::justification::is_at_end;
-use super::{NEGLIGIBLE, Refusal, Search};
+use super::{NEGLIGIBLE, Refusal, STRONG_BIC, Search};
 use crate::candidates::catalogue::has;
 use crate::certainty::one_load::{apart_ratio, is_gain, is_zero};
 use crate::certainty::one_way::MOST_APART_RATIO;
@@ -26,6 +27,28 @@ impl Search<'_, '_> {
             _ => (None, 0.0),
         };
         other.filter(|_| self.is_open(model, ratio)).map(|other| Refusal::Open(*other))
+    }
+
+    /// Whether the log tells a gain from a zero though its load varies little: the gain leaves nothing but noise, where there is strong evidence that a zero
+    /// leaves more.
+    pub(super) fn tells_gain(&mut self, found: &[Effect]) -> bool {
+        let others: Vec<Effect> =
+            found.iter().copied().filter(|of| ![Effect::SensorGain, Effect::SensorOffset].contains(of)).collect();
+        let model = self.fit(&others);
+        if self.bench.has_zero(&model.free)
+            || [Effect::SensorGain, Effect::SensorOffset].iter().any(|of| has(*of, &model.values))
+        {
+            return false;
+        }
+        let [(_, with_gain), (_, with_zero)] = &self.beside(&others, &[Effect::SensorGain, Effect::SensorOffset])[..]
+        else {
+            return false;
+        };
+        let memory = inflation(self.bench, with_zero, &with_zero.free);
+        let as_loud = as_loud_as(with_zero, with_gain.clone());
+        self.excess(with_gain) <= NEGLIGIBLE
+            && as_loud.held_out < with_zero.held_out
+            && self.delta_bic(with_zero, &as_loud, memory) < -STRONG_BIC
     }
 
     /// Returns the best effect that goes with the load in the place of a zero, or a zero in the place of such an effect, if the log does not tell them apart.
@@ -66,4 +89,10 @@ impl Search<'_, '_> {
     fn is_open(&self, model: &Trial, ratio: f64) -> bool {
         apart_ratio(&self.bench.problem(&[], None), &model.values) > MOST_APART_RATIO * ratio
     }
+}
+
+/// Returns a model's sums of squares as they would be if its gain made no less of the sensor's noise than that of another model.
+pub(super) fn as_loud_as(other: &Trial, trial: Trial) -> Trial {
+    let louder = (trial.values[GAIN] / other.values[GAIN]).powi(2).max(1.0);
+    Trial { training: louder * trial.training, held_out: louder * trial.held_out, ..trial }
 }
