@@ -94,10 +94,14 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
         todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
     }
     if !kinds.is_empty() {
-        todo.push("Until then compensate with the extended file: fric-cli discover -o writes it.".to_owned());
+        todo.push(
+            "Until then compensate with the extended file, the one that `fric-cli discover -o` writes.".to_owned(),
+        );
     }
     if todo.is_empty() {
-        todo.push("Keep the model, with the values fitted to this log: fric-cli discover -o writes them.".to_owned());
+        todo.push(
+            "Keep the model, with the values fitted to this log, those that `fric-cli discover -o` writes.".to_owned(),
+        );
     }
     let tone = if !worse.is_empty() {
         Tone::Bad

@@ -43,21 +43,25 @@ impl Search<'_, '_> {
                 return false;
             }
             let Some((other, _)) = self.alternative(found, place) else { continue };
+            let model = self.fit(found);
+            let agrees = |trial: &Trial| trial.held_out <= (1.0 + NEGLIGIBLE) * model.held_out;
             let mut one = found.clone();
             one[place] = other;
-            self.drop_superfluous(&mut one, other);
-            if one.len() == found.len() {
+            // Nothing that is left out makes it better.
+            if !agrees(&as_loud_as(&model, self.fit(&one))) {
                 continue;
             }
-            let (model, trial) = (self.fit(found), self.fit(&one));
-            let as_loud = as_loud_as(&model, trial);
+            self.drop_superfluous(&mut one, other);
+            let trial = as_loud_as(&model, self.fit(&one));
             let memory = inflation(self.bench, &model, &model.free);
-            if self.delta_bic(&model, &as_loud, memory) < 0.0
-                && as_loud.held_out <= (1.0 + NEGLIGIBLE) * model.held_out
+            if one.len() < found.len()
+                && agrees(&trial)
+                && self.delta_bic(&model, &trial, memory) < 0.0
                 && self.justified(&one).iter().all(|named| named.refusal.is_none())
             {
                 self.refused.remove(&other);
                 *found = one;
+                self.renumber(found);
                 return true;
             }
         }
