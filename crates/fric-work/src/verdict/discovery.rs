@@ -14,24 +14,10 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
     let with = |verdict| -> Vec<&DiscoverCableResult> {
         result.cables.iter().filter(|cable| cable.verdict == verdict).collect()
     };
-    let on = |cables: &[&str]| {
-        if cables.len() == count && count > 1 { format!("all {count} cables") } else { listed(cables) }
+    let missing = missing(&result.cables);
+    let names = |cables: &[&DiscoverCableResult]| {
+        on(&cables.iter().map(|cable| cable.name.as_str()).collect::<Vec<_>>(), count)
     };
-    let mut kinds: Vec<(String, Vec<&str>, String)> = Vec::new();
-    for cable in &result.cables {
-        for effect in &cable.effects {
-            let as_good = effect.runner_up.as_ref().filter(|other| other.as_good);
-            let kind =
-                as_good.map_or_else(|| effect.kind.to_owned(), |other| format!("{} or {}", effect.kind, other.kind));
-            match kinds.iter_mut().find(|(known, ..)| *known == kind) {
-                Some((_, names, _)) if names.last() == Some(&cable.name.as_str()) => {}
-                Some((_, names, _)) => names.push(&cable.name),
-                None => kinds.push((kind, vec![&cable.name], remedy(effect, as_good))),
-            }
-        }
-    }
-    let names =
-        |cables: &[&DiscoverCableResult]| on(&cables.iter().map(|cable| cable.name.as_str()).collect::<Vec<_>>());
     let [complete, unexplained, untold] = [Found::Complete, Found::Unexplained, Found::Untold].map(with);
     let is_worse = |cable: &&DiscoverCableResult| {
         let (before, after) = (cable.before.map(|error| error.rms_n), cable.after.map(|error| error.rms_n));
@@ -54,8 +40,9 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
             parts.push("The recording has faults.".to_owned());
         }
     } else {
-        if !kinds.is_empty() {
-            let all: Vec<String> = kinds.iter().map(|(kind, cables, _)| format!("{kind} ({})", on(cables))).collect();
+        if !missing.is_empty() {
+            let all: Vec<String> =
+                missing.iter().map(|of| format!("{} ({})", of.kind, on(&of.cables, count))).collect();
             parts.push(format!("The model lacks {}.", listed(&all)));
         }
         if !unexplained.is_empty() {
@@ -74,26 +61,68 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
             }
         }
     }
-    let mut todo: Vec<String> = Vec::new();
-    for (kind, cables, remedy) in &kinds {
-        todo.push(format!("{kind} on {}: {remedy}.", on(cables)));
+    let tone = if !worse.is_empty() {
+        Tone::Bad
+    } else if is_whole_complete && !has_faults {
+        Tone::Well
+    } else {
+        Tone::Mixed
+    };
+    Verdict { tone, sentence: parts.join(" "), todo: what_to_do(result, &missing, &unexplained) }
+}
+
+/// An effect that models lack, and where.
+struct Missing<'r> {
+    /// Its name, with the one that the log cannot tell from it.
+    kind: String,
+    cables: Vec<&'r str>,
+    remedy: String,
+}
+
+/// Returns the effects that the models of cables lack, each once, in the order in which they come.
+fn missing(cables: &[DiscoverCableResult]) -> Vec<Missing<'_>> {
+    let mut missing: Vec<Missing<'_>> = Vec::new();
+    for cable in cables {
+        for effect in &cable.effects {
+            let as_good = effect.runner_up.as_ref().filter(|other| other.as_good);
+            let kind =
+                as_good.map_or_else(|| effect.kind.to_owned(), |other| format!("{} or {}", effect.kind, other.kind));
+            match missing.iter_mut().find(|known| known.kind == kind) {
+                Some(known) if known.cables.last() == Some(&cable.name.as_str()) => {}
+                Some(known) => known.cables.push(&cable.name),
+                None => missing.push(Missing { kind, cables: vec![&cable.name], remedy: remedy(effect, as_good) }),
+            }
+        }
     }
+    missing
+}
+
+/// Names some of so many cables.
+fn on(cables: &[&str], count: usize) -> String {
+    if cables.len() == count && count > 1 { format!("all {count} cables") } else { listed(cables) }
+}
+
+/// Returns the steps that follow from a discovery, the machine's before the file's.
+fn what_to_do(result: &DiscoverResult, missing: &[Missing<'_>], unexplained: &[&DiscoverCableResult]) -> Vec<String> {
+    let count = result.cables.len();
+    let of_effect = |of: &Missing<'_>| format!("{} on {}: {}.", of.kind, on(&of.cables, count), of.remedy);
+    let mut todo: Vec<String> = missing.iter().map(of_effect).collect();
     todo.extend(result.wrench.iter().flat_map(WrenchGap::corrections));
-    if is_of_no_cable {
+    if result.wrench.as_ref().is_some_and(|gap| gap.is_of_no_cable) {
         todo.push(FROM_OUTSIDE.to_owned());
     }
-    for cable in &unexplained {
+    for cable in unexplained {
         todo.push(format!("Look where the rest of {} lies, below, and record more there.", cable.name));
     }
-    for missing in result.cables.iter().filter_map(|cable| cable.missing.as_ref()) {
-        if !todo.iter().any(|known| known == missing.advice) {
-            todo.push(missing.advice.to_owned());
+    for untold in result.cables.iter().filter_map(|cable| cable.missing.as_ref()) {
+        if !todo.iter().any(|known| known == untold.advice) {
+            todo.push(untold.advice.to_owned());
         }
     }
     for cable in result.cables.iter().filter(|cable| !cable.faults.is_empty()) {
         todo.push(format!("Mend the recording of {}; its faults stand below.", cable.name));
     }
-    if !kinds.is_empty() {
+    if !missing.is_empty() {
         todo.push(
             "Until then compensate with the extended file, the one that `fric-cli discover -o` writes.".to_owned(),
         );
@@ -103,14 +132,7 @@ pub fn of_discovery(result: &DiscoverResult) -> Verdict {
             "Keep the model, with the values fitted to this log, those that `fric-cli discover -o` writes.".to_owned(),
         );
     }
-    let tone = if !worse.is_empty() {
-        Tone::Bad
-    } else if is_whole_complete && !has_faults {
-        Tone::Well
-    } else {
-        Tone::Mixed
-    };
-    Verdict { tone, sentence: parts.join(" "), todo }
+    todo
 }
 
 /// Returns what to do about an effect, as a clause: if the log cannot tell it from another one, both remedies, and the run that tells them apart.
