@@ -6,7 +6,7 @@
 //! 2. *Leave.* An effect stays if all of the following hold: the evidence for it is strong; it is large enough to matter; its parameters keep clear
 //!    of their bounds and can be distinguished from the others; it has one size in every operating condition; and neither an unnamed law nor an
 //!    effect of typical size makes it superfluous. An effect that cannot stay is set aside, and the next one is tried.
-//! 3. *Exchange.* Each remaining effect is compared with every other effect in its place. A delay is finally compared with a lag of the sensor, which it
+//! 3. *Exchange.* Each remaining effect is compared with every other effect in its place, and one may take the place of several. A delay is finally compared with a lag of the sensor, which it
 //!    may be although the lag leaves more noise.
 //! 4. *Enter together.* If nothing changes any more and something is left, two or three effects enter that can stay only beside each other.
 //!
